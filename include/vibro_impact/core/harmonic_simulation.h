@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/response.h"
+#include "vibro_impact/core/switched_model.h"
+
+namespace vibro_impact::core
+{
+/// Advances a switched model under the exact harmonic base acceleration a(t) = A sin(Omega t), whole drive cycles at a time.
+class HarmonicSimulation
+{
+public:
+  /// At rest, without a drive.
+  explicit HarmonicSimulation(std::shared_ptr<const SwitchedModel> model);
+  ~HarmonicSimulation();
+  HarmonicSimulation(HarmonicSimulation&&) noexcept;
+  HarmonicSimulation& operator=(HarmonicSimulation&&) noexcept;
+
+  /// Back to rest at time zero; impact numbers start anew.
+  void reset();
+
+  /// From now on drives with `frequency` (rad/s, finite, > 0) and amplitude `acceleration` (m/s^2, finite, >= 0), starting at
+  /// phase zero; displacement and velocity are kept, time is set to zero. Throws std::invalid_argument for a value out of
+  /// range, and where the drive meets an undamped natural frequency exactly.
+  void setDrive(double frequency, double acceleration);
+
+  /// Advances over `cycles` drive cycles. An impact's `interval` is the number of the cycle since setDrive().
+  void advance(std::uint64_t cycles, ImpactSink& sink);
+
+  double time() const;  ///< since setDrive(), s
+  const SwitchedModel& model() const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The response at one drive frequency: `cycles` cycles from the state in which `simulation` is left by whatever went before
+/// (rest after reset()), evaluated at their end.
+Response harmonicResponse(HarmonicSimulation& simulation, double frequency, double acceleration, std::uint64_t cycles,
+                          const ResponseOptions& options = {});
+
+}  // namespace vibro_impact::core

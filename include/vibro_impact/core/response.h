@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/parameters.h"
+
+namespace vibro_impact::core
+{
+/// One row of a response table: the steady response at one drive frequency. Column names are the members' names.
+struct ResponseRow
+{
+  double omega_star = 0.0;         ///< drive frequency over the lowest natural frequency of beam 1, 1
+  double frequency_hz = 0.0;       ///< drive frequency, Hz
+  double acceleration = 0.0;       ///< amplitude of the base acceleration, m/s^2
+  int period = 0;                  ///< least number of drive cycles after which the response repeats; 0: none up to 16
+  bool steady = false;             ///< the transient has died away
+  int impacts = 0;                 ///< captured impacts, at most ResponseOptions::captured_impacts
+  double impacts_per_cycle = 0.0;  ///< 1
+  double impulse_mean = 0.0;       ///< of the captured impacts, N s
+  double impulse_min = 0.0;        ///< N s
+  double impulse_max = 0.0;        ///< N s
+  double impulse_star_mean = 0.0;  ///< the same, dimensionless (ReferenceScales::impulseStar)
+  double impulse_star_min = 0.0;
+  double impulse_star_max = 0.0;
+  double impulse_per_cycle = 0.0;  ///< impulse of a mean drive cycle, N s
+  double peak_force = 0.0;         ///< greatest force of the captured impacts, N
+  double duration_mean = 0.0;      ///< of the captured impacts, s
+};
+
+/// A captured impact: a whole contact episode on the time axis of one constant-frequency step.
+struct TimedImpact
+{
+  double onset = 0.0;  ///< s, on a time axis on which the step's `start` and `end` are given
+  Impact impact;
+};
+
+struct ResponseOptions
+{
+  int captured_impacts = 15;   ///< impacts at the end of the step that make the row
+  int longest_period = 16;     ///< in drive cycles
+  double tolerance = 1.0e-4;   ///< two impacts are the same if impulse and onset phase agree to this, relative to the greatest impulse and to a cycle
+};
+
+/// One step of constant frequency and amplitude.
+struct DriveStep
+{
+  double frequency = 0.0;     ///< Omega, rad/s, > 0
+  double acceleration = 0.0;  ///< amplitude, m/s^2, >= 0
+  double start = 0.0;         ///< s
+  double end = 0.0;           ///< s, > start
+};
+
+/// The response of one step: its row of the table and the impacts that made it.
+struct Response
+{
+  ResponseRow row;
+  std::vector<TimedImpact> captured;  ///< in order of onset, at most ResponseOptions::captured_impacts
+};
+
+/// Evaluates the end of a step: steady state, period, impulses. `impacts` are those of the step by ascending onset; episodes
+/// that are cut short do not count. Serves the direct sweep and the recorded bag alike. No impacts give a row of zeros with period 1.
+Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>& impacts, const ReferenceScales& scales,
+                          const ResponseOptions& options = {});
+
+}  // namespace vibro_impact::core

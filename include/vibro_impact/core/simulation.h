@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/switched_model.h"
+
+namespace vibro_impact::core
+{
+/// Advances a switched model under a base acceleration given by equally spaced samples, linear between them.
+///
+/// Sample 0 finds the model at rest (its static equilibrium). Nothing in advance() allocates, locks, logs or throws.
+/// The result depends on the samples alone: however they are cut into calls of advance(), it is the same bit for bit.
+class SampledSimulation
+{
+public:
+  /// sample_period in s, finite and > 0; throws std::invalid_argument otherwise.
+  SampledSimulation(std::shared_ptr<const SwitchedModel> model, double sample_period);
+  ~SampledSimulation();
+  SampledSimulation(SampledSimulation&&) noexcept;
+  SampledSimulation& operator=(SampledSimulation&&) noexcept;
+
+  /// Back to rest: the next sample is sample 0. An open episode is reported to `sink` as cut short.
+  void reset(ImpactSink& sink);
+
+  /// Takes the next `count` samples of the base acceleration (m/s^2, finite) and writes the gap (m) and the contact force (N,
+  /// positive in compression) at the time of each. Reports every impact that ends on the way.
+  void advance(const double* acceleration, std::size_t count, double* gap, double* force, ImpactSink& sink);
+
+  /// Reports an open episode to `sink` as cut short, at the end of the stream.
+  void finish(ImpactSink& sink);
+
+  std::uint64_t samples() const;  ///< samples taken since rest
+  double samplePeriod() const;    ///< s
+  bool inContact() const;
+  /// Sample intervals in which the bound on switches per interval was reached.
+  std::uint64_t switchLimitReached() const;
+  const SwitchedModel& model() const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace vibro_impact::core

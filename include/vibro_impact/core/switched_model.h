@@ -1,0 +1,81 @@
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "vibro_impact/core/parameters.h"
+
+namespace vibro_impact::core
+{
+/// One of the two linear states, in its own modal coordinates eta_n:
+///   eta_n'' + 2 zeta_n omega_n eta_n' + omega_n^2 eta_n = -Gamma_n a(t) + f_n,     g = clearance + sum_n b_n eta_n
+/// All arrays have one entry per coordinate.
+struct LinearState
+{
+  Eigen::ArrayXd frequency;           ///< omega_n, rad/s, ascending, > 0
+  Eigen::ArrayXd damping_ratio;       ///< zeta_n, in [0, 1)
+  Eigen::ArrayXd contact_deflection;  ///< b_n in S0, d_n in S1: gap per unit coordinate, kg^-1/2
+  Eigen::ArrayXd participation;       ///< Gamma_n, kg^1/2
+  Eigen::ArrayXd preload;             ///< constant modal force f_n: 0 in S0, -k clearance d_n in S1, N kg^-1/2
+
+  Eigen::Index size() const
+  {
+    return frequency.size();
+  }
+};
+
+/// The immutable switched model: two linear states, the mapping between them, and the contact. Safe to share.
+class SwitchedModel
+{
+public:
+  /// Builds the model. Throws std::invalid_argument as validate() does.
+  explicit SwitchedModel(const SystemParameters& parameters);
+
+  const SystemParameters& parameters() const
+  {
+    return parameters_;
+  }
+  const ReferenceScales& scales() const
+  {
+    return scales_;
+  }
+
+  /// S0: not in contact.
+  const LinearState& free() const
+  {
+    return free_;
+  }
+  /// S1: in contact.
+  const LinearState& contact() const
+  {
+    return contact_;
+  }
+
+  /// T (free().size() x contact().size()): eta0 = T eta1 and eta1 = T^T eta0, displacement and velocity alike; Ervin, eq. (13).
+  const Eigen::MatrixXd& mapping() const
+  {
+    return mapping_;
+  }
+
+  /// For each S0 coordinate the share 1 - sum_n T_mn^2 of its energy that a switch to S1 loses; zero in the attachment basis.
+  Eigen::ArrayXd mappingLoss() const;
+
+  double stiffness() const
+  {
+    return parameters_.contact.stiffness;
+  }
+  double clearance() const
+  {
+    return parameters_.contact.clearance;
+  }
+
+private:
+  SystemParameters parameters_;
+  ReferenceScales scales_;
+  LinearState free_;
+  LinearState contact_;
+  Eigen::MatrixXd mapping_;
+};
+
+}  // namespace vibro_impact::core

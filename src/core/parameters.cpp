@@ -1,0 +1,5 @@
+#include "vibro_impact/core/parameters.h"
+
+namespace vibro_impact::core
+{
+}
