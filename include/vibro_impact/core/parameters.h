@@ -1,6 +1,8 @@
 #pragma once
 
+#include <string>
 #include <variant>
+#include <vector>
 
 namespace vibro_impact::core
 {
@@ -35,7 +37,8 @@ struct DampingParameters
   double contact = 0.0;
 };
 
-/// The paper's basis: the lowest free modes in S0, the lowest conjoined modes in S1; the mapping between them loses energy.
+/// The paper's basis: the lowest free modes in S0, the lowest conjoined modes in S1; the mapping between them loses
+/// energy.
 struct ConjoinedBasis
 {
   int modes_free = 2;     ///< 1 ... 100
@@ -74,9 +77,24 @@ struct ReferenceScales
   }
 };
 
-/// Throws std::invalid_argument, naming the parameter, its value and what is allowed, if one is out of range.
+/// One value out of range.
+struct ParameterFault
+{
+  std::string key;      ///< as in a configuration file: "beam1.length"; "beam1: ..." for a product of several
+  std::string value;    ///< as text
+  std::string allowed;  ///< what it must be, with its unit
+};
+
+/// Every value of `parameters` that is out of range, in the order of the structure's members. Where all are in range by
+/// themselves, their combinations are: stiffnesses, masses and frequencies that overflow, vanish or lie beyond what
+/// double precision resolves. Empty if a model can be built.
+std::vector<ParameterFault> findFaults(const SystemParameters& parameters);
+
+/// Throws std::invalid_argument if findFaults() finds any; the message names each parameter, its value and what is
+/// allowed.
 void validate(const SystemParameters& parameters);
 
+/// The scales of a beam that passes validate().
 ReferenceScales referenceScales(const BeamParameters& beam1);
 
 }  // namespace vibro_impact::core
