@@ -9,7 +9,11 @@
 
 namespace vibro_impact::core
 {
-/// Advances a switched model under the exact harmonic base acceleration a(t) = A sin(Omega t), whole drive cycles at a time.
+/// Advances a switched model under the exact harmonic base acceleration a(t) = -A cos(Omega t), whole drive cycles at a
+/// time.
+///
+/// The base displacement is e(t) = A/Omega^2 cos(Omega t): a run from rest starts where the base, too, has no velocity.
+/// Where several steady responses coexist it is the start that chooses among them.
 class HarmonicSimulation
 {
 public:
@@ -22,9 +26,9 @@ public:
   /// Back to rest at time zero; impact numbers start anew.
   void reset();
 
-  /// From now on drives with `frequency` (rad/s, finite, > 0) and amplitude `acceleration` (m/s^2, finite, >= 0), starting at
-  /// phase zero; displacement and velocity are kept, time is set to zero. Throws std::invalid_argument for a value out of
-  /// range, and where the drive meets an undamped natural frequency exactly.
+  /// From now on drives with `frequency` (rad/s, finite, > 0) and amplitude `acceleration` (m/s^2, finite, >= 0),
+  /// starting at phase zero; displacement and velocity are kept, time is set to zero. Throws std::invalid_argument for
+  /// a value out of range, and where the drive meets an undamped natural frequency exactly.
   void setDrive(double frequency, double acceleration);
 
   /// Advances over `cycles` drive cycles. An impact's `interval` is the number of the cycle since setDrive().
@@ -38,8 +42,8 @@ private:
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The response at one drive frequency: `cycles` cycles from the state in which `simulation` is left by whatever went before
-/// (rest after reset()), evaluated at their end.
+/// The response at one drive frequency: `cycles` cycles from the state in which `simulation` is left by whatever went
+/// before (rest after reset()), evaluated at their end.
 Response harmonicResponse(HarmonicSimulation& simulation, double frequency, double acceleration, std::uint64_t cycles,
                           const ResponseOptions& options = {});
 

@@ -7,11 +7,12 @@ namespace vibro_impact::core
 /// One contact episode, from its located onset to its located release.
 struct Impact
 {
-  std::uint64_t number = 0;       ///< running number since the simulation started from rest, from 0
-  std::uint64_t interval = 0;     ///< number of the drive interval (from sample `interval` to the next) in which the onset lies
-  double offset = 0.0;            ///< time from the start of that interval to the onset, s
-  double duration = 0.0;          ///< s
-  double impulse = 0.0;           ///< integral of the contact force, N s
+  std::uint64_t number = 0;  ///< running number since the simulation started from rest, from 0
+  std::uint64_t interval =
+      0;                  ///< number of the drive interval (from sample `interval` to the next) in which the onset lies
+  double offset = 0.0;    ///< time from the start of that interval to the onset, s
+  double duration = 0.0;  ///< s
+  double impulse = 0.0;   ///< integral of the contact force, N s
   double peak_force = 0.0;        ///< N
   double peak_time = 0.0;         ///< time from the onset to the peak force, s
   double approach_speed = 0.0;    ///< -g' at the onset, m/s; 0 if the episode was there at the start

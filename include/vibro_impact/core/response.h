@@ -11,12 +11,13 @@ namespace vibro_impact::core
 /// One row of a response table: the steady response at one drive frequency. Column names are the members' names.
 struct ResponseRow
 {
-  double omega_star = 0.0;         ///< drive frequency over the lowest natural frequency of beam 1, 1
-  double frequency_hz = 0.0;       ///< drive frequency, Hz
-  double acceleration = 0.0;       ///< amplitude of the base acceleration, m/s^2
-  int period = 0;                  ///< least number of drive cycles after which the response repeats; 0: none up to 16
-  bool steady = false;             ///< the transient has died away
-  int impacts = 0;                 ///< captured impacts, at most ResponseOptions::captured_impacts
+  double omega_star = 0.0;    ///< drive frequency over the lowest natural frequency of beam 1, 1
+  double frequency_hz = 0.0;  ///< drive frequency, Hz
+  double acceleration = 0.0;  ///< amplitude of the base acceleration, m/s^2
+  int period = 0;             ///< least number of drive cycles after which the response repeats; 0: none up to 16
+  bool steady =
+      false;        ///< the transient has died away: the response repeats, or its averages do (statistical_tolerance)
+  int impacts = 0;  ///< captured impacts, at most ResponseOptions::captured_impacts
   double impacts_per_cycle = 0.0;  ///< 1
   double impulse_mean = 0.0;       ///< of the captured impacts, N s
   double impulse_min = 0.0;        ///< N s
@@ -38,9 +39,12 @@ struct TimedImpact
 
 struct ResponseOptions
 {
-  int captured_impacts = 15;   ///< impacts at the end of the step that make the row
-  int longest_period = 16;     ///< in drive cycles
-  double tolerance = 1.0e-4;   ///< two impacts are the same if impulse and onset phase agree to this, relative to the greatest impulse and to a cycle
+  int captured_impacts = 15;  ///< impacts at the end of the step that make the row
+  int longest_period = 16;    ///< in drive cycles
+  double tolerance = 1.0e-4;  ///< two impacts are the same if impulse and onset phase agree to this, relative to the
+                              ///< greatest impulse and to a cycle
+  double statistical_tolerance = 0.1;  ///< a response that does not repeat is steady if the impulses of the third and
+                                       ///< the last quarter of the step differ by no more than this share
 };
 
 /// One step of constant frequency and amplitude.
@@ -59,8 +63,9 @@ struct Response
   std::vector<TimedImpact> captured;  ///< in order of onset, at most ResponseOptions::captured_impacts
 };
 
-/// Evaluates the end of a step: steady state, period, impulses. `impacts` are those of the step by ascending onset; episodes
-/// that are cut short do not count. Serves the direct sweep and the recorded bag alike. No impacts give a row of zeros with period 1.
+/// Evaluates the end of a step: steady state, period, impulses. `impacts` are those of the step by ascending onset;
+/// episodes that are cut short do not count. Serves the direct sweep and the recorded bag alike. No impacts give a row
+/// of zeros with period 1.
 Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>& impacts, const ReferenceScales& scales,
                           const ResponseOptions& options = {});
 

@@ -25,8 +25,8 @@ public:
   /// Back to rest: the next sample is sample 0. An open episode is reported to `sink` as cut short.
   void reset(ImpactSink& sink);
 
-  /// Takes the next `count` samples of the base acceleration (m/s^2, finite) and writes the gap (m) and the contact force (N,
-  /// positive in compression) at the time of each. Reports every impact that ends on the way.
+  /// Takes the next `count` samples of the base acceleration (m/s^2, finite) and writes the gap (m) and the contact
+  /// force (N, positive in compression) at the time of each. Reports every impact that ends on the way.
   void advance(const double* acceleration, std::size_t count, double* gap, double* force, ImpactSink& sink);
 
   /// Reports an open episode to `sink` as cut short, at the end of the stream.

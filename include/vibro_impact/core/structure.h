@@ -14,8 +14,8 @@ struct Mode
 
 /// A linear elastic structure on supports that follow the base, seen only through its modal data at the contact point.
 ///
-/// Its displacement relative to the base is v = sum_m phi_m eta_m; under a base acceleration a(t) and a force F(t) at the
-/// contact point each mode obeys  eta_m'' + 2 zeta omega_m eta_m' + omega_m^2 eta_m = -Gamma_m a + phi_m(x_c) F.
+/// Its displacement relative to the base is v = sum_m phi_m eta_m; under a base acceleration a(t) and a force F(t) at
+/// the contact point each mode obeys  eta_m'' + 2 zeta omega_m eta_m' + omega_m^2 eta_m = -Gamma_m a + phi_m(x_c) F.
 class Structure
 {
 public:

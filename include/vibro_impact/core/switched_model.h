@@ -52,13 +52,15 @@ public:
     return contact_;
   }
 
-  /// T (free().size() x contact().size()): eta0 = T eta1 and eta1 = T^T eta0, displacement and velocity alike; Ervin, eq. (13).
+  /// T (free().size() x contact().size()): eta0 = T eta1 and eta1 = T^T eta0, displacement and velocity alike; Ervin,
+  /// eq. (13).
   const Eigen::MatrixXd& mapping() const
   {
     return mapping_;
   }
 
-  /// For each S0 coordinate the share 1 - sum_n T_mn^2 of its energy that a switch to S1 loses; zero in the attachment basis.
+  /// For each S0 coordinate the share 1 - sum_n T_mn^2 of its energy that a switch to S1 loses; zero in the attachment
+  /// basis.
   Eigen::ArrayXd mappingLoss() const;
 
   double stiffness() const

@@ -1,0 +1,104 @@
+#include "vibro_impact/core/harmonic_simulation.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "switched_motion.h"
+
+namespace vibro_impact::core
+{
+namespace
+{
+constexpr double two_pi = 6.28318530717958647693;
+
+/// Puts impacts on the time axis of a step whose cycles are numbered from zero.
+class ImpactCollector : public ImpactSink
+{
+public:
+  explicit ImpactCollector(double cycle) : cycle_(cycle)
+  {
+  }
+  void onImpact(const Impact& impact) override
+  {
+    impacts_.push_back({static_cast<double>(impact.interval) * cycle_ + impact.offset, impact});
+  }
+  const std::vector<TimedImpact>& impacts() const
+  {
+    return impacts_;
+  }
+
+private:
+  double cycle_;
+  std::vector<TimedImpact> impacts_;
+};
+}  // namespace
+
+struct HarmonicSimulation::Implementation
+{
+  explicit Implementation(std::shared_ptr<const SwitchedModel> model) : motion(std::move(model), true)
+  {
+  }
+  SwitchedMotion motion;
+  double cycle = 0.0;
+};
+
+HarmonicSimulation::HarmonicSimulation(std::shared_ptr<const SwitchedModel> model)
+    : implementation_(std::make_unique<Implementation>(std::move(model)))
+{
+}
+
+HarmonicSimulation::~HarmonicSimulation() = default;
+HarmonicSimulation::HarmonicSimulation(HarmonicSimulation&&) noexcept = default;
+HarmonicSimulation& HarmonicSimulation::operator=(HarmonicSimulation&&) noexcept = default;
+
+void HarmonicSimulation::reset()
+{
+  implementation_->motion.rest();
+}
+
+void HarmonicSimulation::setDrive(double frequency, double acceleration)
+{
+  if (!std::isfinite(frequency) || frequency <= 0.0)
+  {
+    throw std::invalid_argument("drive frequency: " + std::to_string(frequency) + " rad/s; allowed: finite and > 0");
+  }
+  if (!std::isfinite(acceleration) || acceleration < 0.0)
+  {
+    throw std::invalid_argument("acceleration: " + std::to_string(acceleration) + " m/s^2; allowed: finite and >= 0");
+  }
+  implementation_->motion.setHarmonicDrive(frequency, acceleration);
+  implementation_->cycle = two_pi / frequency;
+}
+
+void HarmonicSimulation::advance(std::uint64_t cycles, ImpactSink& sink)
+{
+  for (std::uint64_t i = 0; i < cycles; ++i)
+  {
+    implementation_->motion.advanceHarmonic(sink);
+  }
+}
+
+double HarmonicSimulation::time() const
+{
+  return static_cast<double>(implementation_->motion.intervals()) * implementation_->cycle;
+}
+
+const SwitchedModel& HarmonicSimulation::model() const
+{
+  return implementation_->motion.model();
+}
+
+Response harmonicResponse(HarmonicSimulation& simulation, double frequency, double acceleration, std::uint64_t cycles,
+                          const ResponseOptions& options)
+{
+  simulation.setDrive(frequency, acceleration);
+  ImpactCollector collector(two_pi / frequency);
+  simulation.advance(cycles, collector);
+  const DriveStep step{frequency, acceleration, 0.0, simulation.time()};
+  return evaluateResponse(step, collector.impacts(), simulation.model().scales(), options);
+}
+
+}  // namespace vibro_impact::core

@@ -1,0 +1,91 @@
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "switched_motion.h"
+#include "vibro_impact/core/simulation.h"
+
+namespace vibro_impact::core
+{
+struct SampledSimulation::Implementation
+{
+  Implementation(std::shared_ptr<const SwitchedModel> model, double period)
+      : motion(std::move(model), false), sample_period(period)
+  {
+    motion.setInterval(period);
+  }
+
+  SwitchedMotion motion;
+  double sample_period;
+  double last_acceleration = 0.0;
+  std::uint64_t samples = 0;
+};
+
+SampledSimulation::SampledSimulation(std::shared_ptr<const SwitchedModel> model, double sample_period)
+{
+  if (!std::isfinite(sample_period) || sample_period <= 0.0)
+  {
+    throw std::invalid_argument("sample_period: " + std::to_string(sample_period) + " s; allowed: finite and > 0");
+  }
+  implementation_ = std::make_unique<Implementation>(std::move(model), sample_period);
+}
+
+SampledSimulation::~SampledSimulation() = default;
+SampledSimulation::SampledSimulation(SampledSimulation&&) noexcept = default;
+SampledSimulation& SampledSimulation::operator=(SampledSimulation&&) noexcept = default;
+
+void SampledSimulation::reset(ImpactSink& sink)
+{
+  finish(sink);
+  implementation_->motion.rest();
+  implementation_->samples = 0;
+}
+
+void SampledSimulation::advance(const double* acceleration, std::size_t count, double* gap, double* force,
+                                ImpactSink& sink)
+{
+  Implementation& self = *implementation_;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (self.samples++ > 0)
+    {
+      self.motion.advanceLinear(self.last_acceleration, acceleration[i], sink);
+    }
+    self.last_acceleration = acceleration[i];
+    gap[i] = self.motion.gap();
+    force[i] = self.motion.force();
+  }
+}
+
+void SampledSimulation::finish(ImpactSink& sink)
+{
+  implementation_->motion.interrupt(sink);
+}
+
+std::uint64_t SampledSimulation::samples() const
+{
+  return implementation_->samples;
+}
+
+double SampledSimulation::samplePeriod() const
+{
+  return implementation_->sample_period;
+}
+
+bool SampledSimulation::inContact() const
+{
+  return implementation_->motion.inContact();
+}
+
+std::uint64_t SampledSimulation::switchLimitReached() const
+{
+  return implementation_->motion.switchLimitReached();
+}
+
+const SwitchedModel& SampledSimulation::model() const
+{
+  return implementation_->motion.model();
+}
+
+}  // namespace vibro_impact::core

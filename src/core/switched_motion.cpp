@@ -1,0 +1,837 @@
+#include "switched_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace vibro_impact::core
+{
+namespace
+{
+constexpr double two_pi = 6.28318530717958647693;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+/// Derivatives of the gap below this share of the terms they are summed from are rounding, and taken for zero.
+constexpr double derivative_rounding = 1.0e-9;
+
+/// Keeps the three highest bits: a step shortened by less than a fifth that costs three products a mode at the most.
+std::int64_t threeHighestBits(std::int64_t ticks)
+{
+  int shift = 0;
+  while ((ticks >> shift) > 7)
+  {
+    ++shift;
+  }
+  return (ticks >> shift) << shift;
+}
+}  // namespace
+
+SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool phasor)
+    : model_(std::move(model)), phasor_(phasor)
+{
+  for (int state = 0; state < 2; ++state)
+  {
+    const Eigen::Index modes = linearState(state).size();
+    const Eigen::Index half = modes + (phasor_ ? 1 : 0);
+    Vectors& v = vectors_[static_cast<std::size_t>(state)];
+    v.exponentials = v.before = v.trial = v.piece = Eigen::VectorXd::Zero(2 * half);
+    v.displacement = v.velocity = Eigen::VectorXd::Zero(modes);
+    tabulate(state);
+  }
+  rest();
+}
+
+void SwitchedMotion::tabulate(int state)
+{
+  const LinearState& linear = linearState(state);
+  const Eigen::Index modes = linear.size();
+  const Eigen::Index half = modes + (phasor_ ? 1 : 0);
+  Tables& t = tables_[static_cast<std::size_t>(state)];
+
+  const Eigen::ArrayXd squared = linear.frequency.square();
+  t.decay = linear.damping_ratio * linear.frequency;
+  t.damped = linear.frequency * (1.0 - linear.damping_ratio.square()).sqrt();
+  t.compliance = linear.participation / squared;
+  t.lag = 2.0 * linear.damping_ratio * linear.participation / (squared * linear.frequency);
+  t.standing = linear.preload / squared;
+  t.transfer_re = t.transfer_im = Eigen::ArrayXd::Zero(modes);
+
+  t.line_constant = model_->clearance() + (linear.contact_deflection * t.standing).sum();
+  t.line_compliance = (linear.contact_deflection * t.compliance).sum();
+  t.line_lag = (linear.contact_deflection * t.lag).sum();
+  t.momentum_constant = (linear.participation * t.standing).sum();
+  t.momentum_compliance = (linear.participation * t.compliance).sum();
+  t.momentum_lag = (linear.participation * t.lag).sum();
+
+  t.kick = Eigen::VectorXd::Zero(2 * half);
+  t.kick.head(modes) = -t.lag;
+  t.kick.segment(half, modes) = -(t.compliance - t.decay * t.lag) / t.damped;
+  const Eigen::ArrayXd kick_size =
+      (t.kick.head(modes).array().square() + t.kick.segment(half, modes).array().square()).sqrt();
+  t.kick_bound = (linear.contact_deflection.abs() * squared * kick_size).sum();
+
+  t.derivative = Eigen::MatrixXd::Zero(2 * half, highest_derivative + 2);
+  t.magnitude = Eigen::MatrixXd::Zero(half, highest_derivative + 2);
+  t.momentum = t.momentum_integral = Eigen::VectorXd::Zero(2 * half);
+  for (Eigen::Index n = 0; n < modes; ++n)
+  {
+    const std::complex<double> lambda(-t.decay(n), t.damped(n));
+    const double weight = linear.contact_deflection(n);
+    std::complex<double> factor = weight / lambda;
+    for (Eigen::Index column = 0; column < t.derivative.cols(); ++column)
+    {
+      t.derivative(n, column) = factor.real();
+      t.derivative(half + n, column) = -factor.imag();
+      t.magnitude(n, column) = std::abs(weight) * std::pow(linear.frequency(n), static_cast<double>(column));
+      factor = column == 0 ? std::complex<double>(weight) : factor * lambda;
+    }
+    const std::complex<double> integral = linear.participation(n) / lambda;
+    t.momentum(n) = linear.participation(n);
+    t.momentum_integral(n) = integral.real();
+    t.momentum_integral(half + n) = -integral.imag();
+  }
+}
+
+void SwitchedMotion::tabulatePhasor(int state)
+{
+  const LinearState& linear = linearState(state);
+  const Eigen::Index modes = linear.size();
+  const Eigen::Index half = modes + 1;
+  Tables& t = tables_[static_cast<std::size_t>(state)];
+  const double omega = drive_frequency_;
+  std::complex<double> weight = 0.0;
+  for (Eigen::Index n = 0; n < modes; ++n)
+  {
+    const double natural = linear.frequency(n);
+    const std::complex<double> dynamic_stiffness((natural - omega) * (natural + omega),
+                                                 2.0 * linear.damping_ratio(n) * natural * omega);
+    std::complex<double> transfer = 0.0;
+    if (linear.participation(n) != 0.0)
+    {
+      transfer = -linear.participation(n) / dynamic_stiffness;
+    }
+    t.transfer_re(n) = transfer.real();
+    t.transfer_im(n) = transfer.imag();
+    weight += linear.contact_deflection(n) * transfer;
+  }
+  const std::complex<double> lambda(0.0, omega);
+  std::complex<double> factor = weight / lambda;
+  for (Eigen::Index column = 0; column < t.derivative.cols(); ++column)
+  {
+    t.derivative(modes, column) = factor.real();
+    t.derivative(half + modes, column) = -factor.imag();
+    t.magnitude(modes, column) = std::abs(weight) * std::pow(omega, static_cast<double>(column));
+    factor = column == 0 ? weight : factor * lambda;
+  }
+}
+
+void SwitchedMotion::setInterval(double length)
+{
+  length_ = length;
+  double highest = 0.0;
+  for (int state = 0; state < 2; ++state)
+  {
+    const LinearState& linear = linearState(state);
+    highest = std::max(highest, (linear.contact_deflection != 0.0).select(linear.frequency, 0.0).maxCoeff());
+  }
+  const double tolerance = std::max(1.0e-12, highest > 0.0 ? 1.0e-9 * two_pi / highest : 0.0);
+  doublings_ = std::clamp(static_cast<int>(std::ceil(std::log2(length / tolerance))), 10, 60);
+  tick_ = std::ldexp(length, -doublings_);
+
+  for (int state = 0; state < 2; ++state)
+  {
+    Tables& t = tables_[static_cast<std::size_t>(state)];
+    const Eigen::Index modes = linearState(state).size();
+    const Eigen::Index half = modes + (phasor_ ? 1 : 0);
+    t.factor_re.resize(half, doublings_ + 1);
+    t.factor_im.resize(half, doublings_ + 1);
+    for (int k = 0; k <= doublings_; ++k)
+    {
+      const double time = std::ldexp(tick_, k);
+      for (Eigen::Index n = 0; n < half; ++n)
+      {
+        const double size = n < modes ? std::exp(-t.decay(n) * time) : 1.0;
+        const double angle = (n < modes ? t.damped(n) : drive_frequency_) * time;
+        t.factor_re(n, k) = size * std::cos(angle);
+        t.factor_im(n, k) = size * std::sin(angle);
+      }
+    }
+  }
+}
+
+void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
+{
+  for (int state = 0; state < 2; ++state)
+  {
+    const LinearState& linear = linearState(state);
+    for (Eigen::Index n = 0; n < linear.size(); ++n)
+    {
+      if (linear.participation(n) != 0.0 && linear.damping_ratio(n) == 0.0 &&
+          std::abs(linear.frequency(n) - frequency) <= 1.0e-9 * frequency)
+      {
+        throw std::invalid_argument("drive frequency: " + std::to_string(frequency / two_pi) +
+                                    " Hz is a natural frequency of an undamped mode, whose response has no bound; "
+                                    "give it damping or choose another frequency");
+      }
+    }
+  }
+  if (!in_coordinates_)
+  {
+    toCoordinates();
+  }
+  drive_frequency_ = frequency;
+  drive_amplitude_ = amplitude;
+  setInterval(two_pi / frequency);
+  for (int state = 0; state < 2; ++state)
+  {
+    tabulatePhasor(state);
+  }
+  in_coordinates_ = true;
+  restartIntervalCount();
+}
+
+void SwitchedMotion::restartIntervalCount()
+{
+  intervals_ = 0;
+  if (state_ == 1)
+  {
+    episode_.impact.interval = 0;
+    episode_.impact.offset = -episode_.elapsed;
+  }
+}
+
+void SwitchedMotion::rest()
+{
+  state_ = model_->clearance() < 0.0 ? 1 : 0;
+  Vectors& v = vectors();
+  v.displacement = now().standing;
+  v.velocity.setZero();
+  in_coordinates_ = true;
+  start_acceleration_ = slope_ = time_ = 0.0;
+  gap_ = now().line_constant;
+  rate_ = bound_ = 0.0;
+  resolution_ = 16.0 * epsilon * std::abs(model_->clearance());
+  intervals_ = impacts_ = 0;
+  if (state_ == 1)
+  {
+    beginEpisode(0.0, 0.0, 0.0, energy());
+    episode_.impact.cut_short = true;
+  }
+}
+
+void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
+{
+  state_ = 0;
+  vectors().displacement = displacement;
+  vectors().velocity = velocity;
+  const Eigen::ArrayXd& deflection = model_->free().contact_deflection;
+  gap_ = model_->clearance() + deflection.matrix().dot(displacement);
+  rate_ = deflection.matrix().dot(velocity);
+  resolution_ = 16.0 * epsilon * (std::abs(model_->clearance()) + (deflection * displacement.array()).abs().sum());
+  in_coordinates_ = true;
+  if (gap_ < -resolution_)
+  {
+    const double stored = energy();
+    state_ = 1;
+    vectors().displacement = model_->mapping().transpose() * displacement;
+    vectors().velocity = model_->mapping().transpose() * velocity;
+    beginEpisode(0.0, 0.0, 0.0, stored);
+    episode_.impact.cut_short = true;
+  }
+}
+
+double SwitchedMotion::force() const
+{
+  if (state_ == 0 || (gap_ > 0.0 && gap_ <= resolution_))
+  {
+    return 0.0;
+  }
+  return -model_->stiffness() * gap_;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Coordinates and exponentials
+
+void SwitchedMotion::coordinates(Eigen::VectorXd& displacement, Eigen::VectorXd& velocity) const
+{
+  const Vectors& v = vectors();
+  if (in_coordinates_)
+  {
+    displacement = v.displacement;
+    velocity = v.velocity;
+    return;
+  }
+  const Tables& t = now();
+  const Eigen::Index modes = t.decay.size();
+  const Eigen::Index half = v.exponentials.size() / 2;
+  const auto re = v.exponentials.head(modes).array();
+  const auto im = v.exponentials.segment(half, modes).array();
+  displacement = (t.standing - t.compliance * acceleration(time_) + t.lag * slope_ + re).matrix();
+  velocity = (-t.compliance * slope_ - t.decay * re - t.damped * im).matrix();
+  if (phasor_)
+  {
+    const double drive_re = v.exponentials(modes);
+    const double drive_im = v.exponentials(half + modes);
+    displacement.array() += t.transfer_re * drive_re - t.transfer_im * drive_im;
+    velocity.array() -= drive_frequency_ * (t.transfer_im * drive_re + t.transfer_re * drive_im);
+  }
+}
+
+void SwitchedMotion::toCoordinates()
+{
+  coordinates(vectors().displacement, vectors().velocity);
+}
+
+void SwitchedMotion::toExponentials()
+{
+  Vectors& v = vectors();
+  const Tables& t = now();
+  const Eigen::Index modes = t.decay.size();
+  const Eigen::Index half = v.exponentials.size() / 2;
+  auto re = v.exponentials.head(modes).array();
+  auto im = v.exponentials.segment(half, modes).array();
+  re = v.displacement.array() - (t.standing - t.compliance * acceleration(time_) + t.lag * slope_);
+  im = v.velocity.array() + t.compliance * slope_;
+  if (phasor_)
+  {
+    const double drive_re = v.exponentials(modes);
+    const double drive_im = v.exponentials(half + modes);
+    re -= t.transfer_re * drive_re - t.transfer_im * drive_im;
+    im += drive_frequency_ * (t.transfer_im * drive_re + t.transfer_re * drive_im);
+  }
+  im = -(im + t.decay * re) / t.damped;
+  in_coordinates_ = false;
+}
+
+double SwitchedMotion::energy() const
+{
+  Eigen::VectorXd displacement;
+  Eigen::VectorXd velocity;
+  coordinates(displacement, velocity);
+  return energy(state_, displacement, velocity);
+}
+
+double SwitchedMotion::energy(int state, const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const
+{
+  const LinearState& linear = linearState(state);
+  double sum = 0.5 * (velocity.squaredNorm() + (linear.frequency * displacement.array()).matrix().squaredNorm());
+  if (state == 1)
+  {
+    // The spring's 1/2 k g^2 with g = clearance + d.eta: its quadratic part is in the frequencies, its linear one is
+    // the preload.
+    sum += -(linear.preload * displacement.array()).sum() +
+           0.5 * model_->stiffness() * model_->clearance() * model_->clearance();
+  }
+  return sum;
+}
+
+void SwitchedMotion::rotate(Eigen::VectorXd& exponentials, int k) const
+{
+  const Tables& t = now();
+  const Eigen::Index half = t.factor_re.rows();
+  double* __restrict re = exponentials.data();
+  double* __restrict im = exponentials.data() + half;
+  const double* __restrict factor_re = t.factor_re.data() + k * half;
+  const double* __restrict factor_im = t.factor_im.data() + k * half;
+  for (Eigen::Index n = 0; n < half; ++n)
+  {
+    const double x = re[n];
+    const double y = im[n];
+    re[n] = x * factor_re[n] - y * factor_im[n];
+    im[n] = x * factor_im[n] + y * factor_re[n];
+  }
+}
+
+void SwitchedMotion::rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const
+{
+  for (int k = 0; ticks != 0; ++k, ticks >>= 1)
+  {
+    if ((ticks & 1) != 0)
+    {
+      rotate(exponentials, k);
+    }
+  }
+}
+
+void SwitchedMotion::evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const
+{
+  const Tables& t = now();
+  gap = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_ +
+        t.derivative.col(1).dot(exponentials);
+  rate = -t.line_compliance * slope_ + t.derivative.col(2).dot(exponentials);
+}
+
+void SwitchedMotion::evaluate()
+{
+  evaluate(vectors().exponentials, time_, gap_, rate_);
+}
+
+double SwitchedMotion::boundOfDerivative(int order) const
+{
+  return boundOfDerivative(order, vectors().exponentials);
+}
+
+double SwitchedMotion::boundOfDerivative(int order, const Eigen::VectorXd& z) const
+{
+  const Eigen::Index half = z.size() / 2;
+  return now().magnitude.col(order).dot(
+      (z.head(half).array().square() + z.tail(half).array().square()).sqrt().matrix());
+}
+
+void SwitchedMotion::refreshBound()
+{
+  const Tables& t = now();
+  bound_ = boundOfDerivative(2);
+  const double farthest = std::max(std::abs(start_acceleration_), std::abs(start_acceleration_ + slope_ * length_));
+  resolution_ = 16.0 * epsilon *
+                (std::abs(model_->clearance()) + std::abs(t.line_constant) + std::abs(t.line_compliance) * farthest +
+                 std::abs(t.line_lag * slope_) + boundOfDerivative(0));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Advancing
+
+void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
+{
+  const double slope = (to - from) / length_;
+  start_acceleration_ = from;
+  time_ = 0.0;
+  if (in_coordinates_)
+  {
+    slope_ = slope;
+    toExponentials();
+    evaluate();
+    refreshBound();
+  }
+  else if (slope != slope_)
+  {
+    // Displacement and velocity are continuous; the quasi-static part takes the new slope at once and z makes up for
+    // it.
+    const double change = slope - slope_;
+    slope_ = slope;
+    vectors().exponentials += change * now().kick;
+    bound_ += std::abs(change) * now().kick_bound;
+  }
+  advanceInterval(sink);
+}
+
+void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
+{
+  time_ = 0.0;
+  // The phasor starts every cycle anew, so that its rounding cannot add up: a = Re D = -amplitude cos(Omega t).
+  for (Vectors& v : vectors_)
+  {
+    const Eigen::Index half = v.exponentials.size() / 2;
+    v.exponentials(half - 1) = -drive_amplitude_;
+    v.exponentials(2 * half - 1) = 0.0;
+  }
+  if (in_coordinates_)
+  {
+    toExponentials();
+    evaluate();
+    refreshBound();
+  }
+  advanceInterval(sink);
+}
+
+void SwitchedMotion::advanceInterval(ImpactSink& sink)
+{
+  if (state_ == 1)
+  {
+    beginPiece();
+  }
+  const double distance = side() * gap_;
+  const double reach = distance + side() * rate_ * length_ - 0.5 * bound_ * length_ * length_;
+  if (distance >= 0.0 && reach >= 0.0)
+  {
+    step(std::int64_t{1} << doublings_, 0.0);
+  }
+  else
+  {
+    locateSwitches(sink);
+  }
+  time_ = length_;
+  if (state_ == 1)
+  {
+    endPiece();
+  }
+  ++intervals_;
+}
+
+/// Moves on by `ticks` from `time`, and watches the peak of the force on the way.
+void SwitchedMotion::step(std::int64_t ticks, double time)
+{
+  const double gap_before = gap_;
+  const double rate_before = rate_;
+  if (state_ == 1)
+  {
+    vectors().before = vectors().exponentials;
+  }
+  rotateTicks(vectors().exponentials, ticks);
+  time_ = time + static_cast<double>(ticks) * tick_;
+  evaluate();
+  if (state_ == 1)
+  {
+    watchPeak(time, ticks, gap_before, rate_before);
+  }
+}
+
+bool SwitchedMotion::crossed() const
+{
+  return side() * gap_ < -resolution_ && side() * rate_ < 0.0;
+}
+
+void SwitchedMotion::locateSwitches(ImpactSink& sink)
+{
+  const std::int64_t total = std::int64_t{1} << doublings_;
+  std::int64_t tick = 0;
+  std::int64_t smallest = 1;
+  int switches = 0;
+  int steps = 0;
+  refreshBound();
+  while (tick < total)
+  {
+    const std::int64_t left = total - tick;
+    const double time = static_cast<double>(tick) * tick_;
+    if (switches == switch_limit)
+    {
+      ++switch_limit_reached_;
+      step(left, time);
+      break;
+    }
+    ++steps_total_;
+    std::int64_t ticks = crossed() ? 0 : safeTicks(left);
+    if (ticks == 0)
+    {
+      time_ = time;
+      switchState(time, sink);
+      ++switches;
+      steps = 0;
+      smallest = 1;
+      continue;
+    }
+    if (++steps % steps_before_coarser == 0)
+    {
+      smallest *= 2;
+    }
+    if (ticks < smallest && smallest > 1)
+    {
+      // Near grazing: a step that may overrun a crossing. Try it on a copy; if it does, halve it.
+      ticks = std::min(smallest, left);
+      Vectors& v = vectors();
+      v.trial = v.exponentials;
+      rotateTicks(v.trial, ticks);
+      double gap = 0.0;
+      double rate = 0.0;
+      evaluate(v.trial, time + static_cast<double>(ticks) * tick_, gap, rate);
+      if (ticks > 1 && side() * gap < -resolution_)
+      {
+        smallest = ticks / 2;
+        continue;
+      }
+    }
+    step(ticks, time);
+    tick += ticks;
+  }
+}
+
+/// How many of the `left` ticks can be made without a switch; at least 1, or 0 where the state must be switched now.
+std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
+{
+  const double distance = std::max(0.0, side() * gap_);
+  const double rate = side() * rate_;
+  double time = 0.0;
+  if (bound_ > 0.0)
+  {
+    const double root = std::sqrt(rate * rate + 2.0 * distance * bound_);
+    time = rate >= 0.0 ? (rate + root) / bound_ : 2.0 * distance / (root - rate);
+  }
+  else
+  {
+    time = rate >= 0.0 ? length_ : -distance / rate;
+  }
+  const double ticks = time / tick_;
+  if (ticks < 64.0 && distance <= resolution_ && std::abs(rate) <= derivative_rounding * boundOfDerivative(1))
+  {
+    return departureTicks(left);
+  }
+  if (ticks >= static_cast<double>(left))
+  {
+    return left;
+  }
+  return std::max<std::int64_t>(1, threeHighestBits(static_cast<std::int64_t>(ticks)));
+}
+
+/// At gap zero with zero velocity the first derivative that is not zero decides: away from contact (no switch) or into
+/// it. With the derivative D of order k and the bound B of the next one the gap keeps its sign for  (k + 1) |D|/B; half
+/// of that is made.
+std::int64_t SwitchedMotion::departureTicks(std::int64_t left)
+{
+  for (int order = 2; order <= highest_derivative; ++order)
+  {
+    const double derivative = side() * now().derivative.col(order + 1).dot(vectors().exponentials);
+    if (std::abs(derivative) > derivative_rounding * boundOfDerivative(order))
+    {
+      if (derivative < 0.0)
+      {
+        return 0;
+      }
+      const double ticks = 0.5 * (order + 1) * derivative / (boundOfDerivative(order + 1) * tick_);
+      return ticks >= static_cast<double>(left)
+                 ? left
+                 : std::max<std::int64_t>(1, threeHighestBits(static_cast<std::int64_t>(ticks)));
+    }
+  }
+  return left;  // nothing moves
+}
+
+void SwitchedMotion::switchState(double time, ImpactSink& sink)
+{
+  // The tick lies past the root by less than itself; in the conjoined basis a jump of the gap may have put it anywhere.
+  const double overrun = gap_ / rate_;
+  const double late = overrun > 0.0 && overrun <= tick_ ? overrun : 0.0;
+  const double speed = std::abs(rate_);
+  if (state_ == 1)
+  {
+    endPiece();
+    episode_.elapsed -= late;
+    episode_.impact.separation_speed = speed;
+  }
+  const Vectors& from = vectors();
+  toCoordinates();
+  const double energy_before = energy(state_, from.displacement, from.velocity);
+  const Eigen::Index from_half = from.exponentials.size() / 2;
+
+  state_ = 1 - state_;
+  Vectors& to = vectors();
+  if (state_ == 1)
+  {
+    to.displacement.noalias() = model_->mapping().transpose() * from.displacement;
+    to.velocity.noalias() = model_->mapping().transpose() * from.velocity;
+  }
+  else
+  {
+    to.displacement.noalias() = model_->mapping() * from.displacement;
+    to.velocity.noalias() = model_->mapping() * from.velocity;
+  }
+  if (phasor_)
+  {
+    const Eigen::Index half = to.exponentials.size() / 2;
+    to.exponentials(half - 1) = from.exponentials(from_half - 1);
+    to.exponentials(2 * half - 1) = from.exponentials(2 * from_half - 1);
+  }
+  toExponentials();
+  evaluate();
+  refreshBound();
+  ++switches_;
+  if (state_ == 1)
+  {
+    beginEpisode(time - late, late, speed, energy_before);
+    beginPiece();
+  }
+  else
+  {
+    endEpisode(sink, energy(0, to.displacement, to.velocity));
+  }
+}
+
+void SwitchedMotion::interrupt(ImpactSink& sink)
+{
+  if (state_ == 1)
+  {
+    const double stored = energy();
+    episode_.impact.cut_short = true;
+    endEpisode(sink, stored);
+    // What is left of the episode is not whole either.
+    beginEpisode(0.0, 0.0, 0.0, stored);
+    episode_.impact.cut_short = true;
+  }
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The contact episode
+
+void SwitchedMotion::beginEpisode(double offset, double elapsed, double approach_speed, double energy)
+{
+  episode_ = Episode();
+  episode_.impact.interval = intervals_;
+  episode_.impact.offset = offset;
+  episode_.impact.approach_speed = approach_speed;
+  episode_.elapsed = elapsed;
+  episode_.energy = energy;
+  episode_.smallest_gap = gap_;
+}
+
+void SwitchedMotion::beginPiece()
+{
+  episode_.piece_start = time_;
+  vectors().piece = vectors().exponentials;
+}
+
+/// Integrals over the piece in closed form. The base's work on the structures is W = -integral a q' dt with q = sum
+/// Gamma eta.
+void SwitchedMotion::endPiece()
+{
+  const Tables& t = now();
+  const Vectors& v = vectors();
+  const double duration = time_ - episode_.piece_start;
+  const double from = acceleration(episode_.piece_start);
+  const double to = acceleration(time_);
+  const double mean = 0.5 * (from + to);
+  episode_.gap_integral += duration * (t.line_constant - t.line_compliance * mean + t.line_lag * slope_) +
+                           (t.derivative.col(0).dot(v.exponentials) - t.derivative.col(0).dot(v.piece));
+  if (phasor_)
+  {
+    episode_.work += harmonicWork();
+  }
+  else
+  {
+    // by parts: W = -[a q] + s integral q dt
+    const double constant = t.momentum_constant + t.momentum_lag * slope_;
+    const double momentum_from = constant - t.momentum_compliance * from + t.momentum.dot(v.piece);
+    const double momentum_to = constant - t.momentum_compliance * to + t.momentum.dot(v.exponentials);
+    const double integral = duration * (constant - t.momentum_compliance * mean) +
+                            (t.momentum_integral.dot(v.exponentials) - t.momentum_integral.dot(v.piece));
+    episode_.work += slope_ * integral - (to * momentum_to - from * momentum_from);
+  }
+  episode_.elapsed += duration;
+}
+
+/// W of the piece under Re D, with q' = Re sum Gamma lambda z + Re(i Omega V D), V = sum Gamma H:
+///   integral Re(D) Re(y) dt = 1/2 Re integral (D y + D* y) dt,  exponentials all of them
+double SwitchedMotion::harmonicWork() const
+{
+  const Tables& t = now();
+  const Vectors& v = vectors();
+  const LinearState& linear = linearState(state_);
+  const Eigen::Index modes = linear.size();
+  const Eigen::Index half = modes + 1;
+  const auto entry = [half](const Eigen::VectorXd& exponentials, Eigen::Index n)
+  { return std::complex<double>(exponentials(n), exponentials(half + n)); };
+  const std::complex<double> drive_from = entry(v.piece, modes);
+  const std::complex<double> drive_to = entry(v.exponentials, modes);
+  const std::complex<double> i_omega(0.0, drive_frequency_);
+  std::complex<double> integral = 0.0;  // of (D + D*) q', complex parts as above
+  std::complex<double> admittance = 0.0;
+  for (Eigen::Index n = 0; n < modes; ++n)
+  {
+    if (linear.participation(n) == 0.0)
+    {
+      continue;
+    }
+    const std::complex<double> lambda(-t.decay(n), t.damped(n));
+    const std::complex<double> from = entry(v.piece, n);
+    const std::complex<double> to = entry(v.exponentials, n);
+    integral += linear.participation(n) * lambda *
+                ((to * drive_to - from * drive_from) / (lambda + i_omega) +
+                 (to * std::conj(drive_to) - from * std::conj(drive_from)) / (lambda - i_omega));
+    admittance += linear.participation(n) * std::complex<double>(t.transfer_re(n), t.transfer_im(n));
+  }
+  const double duration = time_ - episode_.piece_start;
+  integral += 0.5 * admittance * (drive_to * drive_to - drive_from * drive_from) +
+              i_omega * admittance * drive_amplitude_ * drive_amplitude_ * duration;
+  return -0.5 * integral.real();
+}
+
+void SwitchedMotion::endEpisode(ImpactSink& sink, double energy)
+{
+  Impact& impact = episode_.impact;
+  impact.number = impacts_++;
+  impact.duration = std::max(0.0, episode_.elapsed);
+  impact.impulse = -model_->stiffness() * episode_.gap_integral;
+  impact.peak_force = std::max(0.0, -model_->stiffness() * episode_.smallest_gap);
+  impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
+  impact.energy_lost = episode_.energy + episode_.work - energy;
+  // An episode no deeper than the gap's rounding has no impulse that could be told from zero.
+  if (impact.impulse < 0.0 && impact.impulse > -model_->stiffness() * resolution_ * impact.duration)
+  {
+    impact.impulse = 0.0;
+  }
+  sink.onImpact(impact);
+}
+
+void SwitchedMotion::notePeak(double gap, double time)
+{
+  if (gap < episode_.smallest_gap)
+  {
+    episode_.smallest_gap = gap;
+    episode_.smallest_gap_time = episode_.elapsed + (time - episode_.piece_start);
+  }
+}
+
+void SwitchedMotion::watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before)
+{
+  notePeak(gap_, time_);
+  refinePeak(start, GapSample{0, gap_before, rate_before}, GapSample{ticks, gap_, rate_}, -1.0, 0);
+}
+
+/// Finds a gap smaller than any so far between two samples of the step that began at `start`, if there is one.
+void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, double third_derivative_bound,
+                                int depth)
+{
+  // With |g''| <= B the gap lies above a parabola through each end, with its value and slope there. They meet where
+  //   g_0 + g_0' t - B t^2/2 = g_1 - g_1' (w - t) - B (w - t)^2/2.
+  const double width = static_cast<double>(to.tick - from.tick) * tick_;
+  const double slope = from.rate - to.rate - bound_ * width;
+  const double meeting =
+      slope < 0.0 ? (to.gap - from.gap - to.rate * width - 0.5 * bound_ * width * width) / slope : 0.0;
+  const double t = std::clamp(meeting, 0.0, width);
+  const double lowest = from.gap + from.rate * t - 0.5 * bound_ * t * t;
+  constexpr double tolerance = 1.0e-10;
+  constexpr int deepest = 48;
+  if (lowest >= episode_.smallest_gap - tolerance * std::abs(episode_.smallest_gap) || to.tick - from.tick < 2 ||
+      depth == deepest)
+  {
+    return;
+  }
+
+  Vectors& v = vectors();
+  const auto sample = [&](std::int64_t tick, double& curvature)
+  {
+    v.trial = v.before;
+    rotateTicks(v.trial, tick);
+    GapSample result{tick, 0.0, 0.0};
+    const double time = start + static_cast<double>(tick) * tick_;
+    evaluate(v.trial, time, result.gap, result.rate);
+    curvature = now().derivative.col(3).dot(v.trial);
+    notePeak(result.gap, time);
+    return result;
+  };
+
+  if (third_derivative_bound < 0.0)
+  {
+    third_derivative_bound = boundOfDerivative(3, v.before);
+  }
+  const bool minimum_inside = from.rate < 0.0 && to.rate > 0.0;
+  const double fraction = minimum_inside ? from.rate / (from.rate - to.rate) : 0.5;
+  const std::int64_t range = to.tick - from.tick;
+  const std::int64_t chosen =
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(fraction * static_cast<double>(range)), 1, range - 1);
+  double curvature = 0.0;
+  GapSample middle = sample(from.tick + chosen, curvature);
+  const double farthest = static_cast<double>(std::max(chosen, range - chosen)) * tick_;
+  if (curvature > third_derivative_bound * farthest)  // convex throughout: no more than one minimum
+  {
+    for (int iteration = 0; minimum_inside && iteration < 8; ++iteration)
+    {
+      const double correction = -middle.rate / curvature;
+      const double gain = -0.5 * middle.rate * correction;
+      if (gain <= 1.0e-9 * std::abs(middle.gap) || std::abs(correction) < tick_)
+      {
+        notePeak(middle.gap - gain, start + static_cast<double>(middle.tick) * tick_ + correction);
+        break;
+      }
+      const std::int64_t next = middle.tick + static_cast<std::int64_t>(correction / tick_);
+      middle = sample(std::clamp(next, from.tick, to.tick), curvature);
+    }
+    return;
+  }
+  refinePeak(start, from, middle, third_derivative_bound, depth + 1);
+  refinePeak(start, middle, to, third_derivative_bound, depth + 1);
+}
+
+}  // namespace vibro_impact::core

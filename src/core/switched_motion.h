@@ -1,0 +1,259 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/switched_model.h"
+
+namespace vibro_impact::core
+{
+/// The motion of a switched model, advanced exactly from one switch to the next.
+///
+/// Over an interval of the drive the base acceleration is  a(t) = a_0 + s t + Re D(t),  D' = i Omega D,  and in either
+/// state
+///
+///   eta_n(t)  = f_n/omega_n^2 - Gamma_n/omega_n^2 (a_0 + s t - 2 zeta_n s/omega_n) + Re H_n D + Re z_n
+///   z_n' = lambda_n z_n,    lambda_n = -zeta_n omega_n + i omega_n sqrt(1 - zeta_n^2),    H_n = -Gamma_n/(omega_n^2 -
+///   Omega^2 + 2 i zeta_n omega_n Omega)
+///
+/// so that the gap is a straight line and a sum of exponentials,  g = p(t) + Re sum_n w_n z_n,  with the drive's phasor
+/// D as one more exponential. Time inside an interval is counted in ticks, 2^-K of the interval, and z is advanced by
+/// factors exp(lambda tick 2^k) tabulated once: no transcendental function is evaluated between the switches, nor at
+/// them.
+///
+/// A switch is found by steps that cannot skip one. If B bounds |g''|, a gap g > 0 with the rate g' cannot reach zero
+/// before
+///
+///   s = (g' + sqrt(g'^2 + 2 g B))/B,        B = sum_n |w_n| |lambda_n|^2 |z_n|  (amplitudes only decay)
+///
+/// and near a root s converges on it as Newton's method does, from this side. The motion lands on the first tick past
+/// the root. As both states agree at gap zero, the tick's lateness enters the motion in second order only; the reported
+/// time is corrected.
+class SwitchedMotion
+{
+public:
+  /// At most this many switches in one interval; further ones are not made before its end, and the interval is counted.
+  static constexpr int switch_limit = 256;
+
+  /// Steps in one interval without a switch after which the smallest step, one tick, is doubled (and again after as
+  /// many). A crossing that such a step overruns is still found by halving it; only a pair of crossings closer than the
+  /// step is not.
+  static constexpr int steps_before_coarser = 256;
+
+  /// `phasor`: whether there is a harmonic drive D besides the linear one.
+  SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool phasor);
+
+  /// Sets the length of the intervals (s, > 0) and tabulates the factors. Allocates at the first call only.
+  void setInterval(double length);
+
+  /// Sets the harmonic drive, Re D = -amplitude cos(Omega t), t = 0 at the start of an interval, an interval being one
+  /// drive cycle. Keeps displacement and velocity.
+  void setHarmonicDrive(double frequency, double amplitude);
+
+  /// Static equilibrium without base acceleration; impact numbers start anew.
+  void rest();
+
+  /// Advances over one interval in which the base acceleration goes from `from` to `to` in a straight line.
+  void advanceLinear(double from, double to, ImpactSink& sink);
+
+  /// Advances over one cycle of the harmonic drive.
+  void advanceHarmonic(ImpactSink& sink);
+
+  /// Reports an open episode as cut short, now.
+  void interrupt(ImpactSink& sink);
+
+  double gap() const
+  {
+    return gap_;
+  }
+  /// The contact force now, N: -k g in S1. A gap within its rounding error of zero exerts no force.
+  double force() const;
+  bool inContact() const
+  {
+    return state_ == 1;
+  }
+  double gapRate() const
+  {
+    return rate_;
+  }
+  /// Displacement and velocity in the coordinates of the present state, at the start of the next interval.
+  void coordinates(Eigen::VectorXd& displacement, Eigen::VectorXd& velocity) const;
+  /// Sets displacement and velocity in the coordinates of S0, mapped where the gap says contact.
+  void setFreeCoordinates(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
+  /// Kinetic and strain energy of both structures and the contact spring, J.
+  double energy() const;
+
+  std::uint64_t intervals() const
+  {
+    return intervals_;
+  }
+  /// Counts intervals from zero again; an open episode keeps its time.
+  void restartIntervalCount();
+  std::uint64_t switchLimitReached() const
+  {
+    return switch_limit_reached_;
+  }
+  std::uint64_t switches() const
+  {
+    return switches_;
+  }
+  /// Evaluations of the gap on the way to switches, for those who measure.
+  std::uint64_t steps() const
+  {
+    return steps_total_;
+  }
+  double tick() const
+  {
+    return tick_;
+  }
+  const SwitchedModel& model() const
+  {
+    return *model_;
+  }
+
+private:
+  static constexpr int highest_derivative = 8;
+
+  /// Everything about one state that the drive's form and the interval fix beforehand.
+  struct Tables
+  {
+    Eigen::ArrayXd decay, damped;             // -Re lambda, Im lambda, per mode
+    Eigen::ArrayXd compliance;                // Gamma/omega^2: quasi-static response to -a
+    Eigen::ArrayXd lag;                       // 2 zeta Gamma/omega^3: response to the slope s
+    Eigen::ArrayXd standing;                  // f/omega^2: response to the preload
+    Eigen::ArrayXd transfer_re, transfer_im;  // H_n
+    Eigen::VectorXd kick;                     // change of z per change of the slope s, [re; im]
+    double kick_bound = 0.0;                  // what it adds to B
+    // The line p(t) = line_constant - line_compliance a + line_lag s of the gap, and the same of q = sum Gamma eta.
+    double line_constant = 0.0, line_compliance = 0.0, line_lag = 0.0;
+    double momentum_constant = 0.0, momentum_compliance = 0.0, momentum_lag = 0.0;
+    // Column j + 1: the linear form [re; im] that gives the j-th derivative of Re sum w z; column 0 its integral.
+    Eigen::MatrixXd derivative;
+    Eigen::MatrixXd magnitude;                    // column j: |w| |lambda|^j
+    Eigen::VectorXd momentum, momentum_integral;  // the same of Re sum Gamma z
+    Eigen::ArrayXXd factor_re, factor_im;         // column k: exp(lambda tick 2^k)
+  };
+
+  /// What moves, in the sizes of one state.
+  struct Vectors
+  {
+    Eigen::VectorXd exponentials;  // [Re z; Im z], the drive's phasor last in each half
+    Eigen::VectorXd before, trial,
+        piece;  // exponentials at other times: before a step, on trial, at the start of a piece
+    Eigen::VectorXd displacement, velocity;  // eta and eta'
+  };
+
+  /// The contact episode under way.
+  struct Episode
+  {
+    Impact impact;
+    double smallest_gap = 0.0;
+    double smallest_gap_time = 0.0;  // since onset
+    double elapsed = 0.0;            // up to the start of the piece
+    double gap_integral = 0.0;
+    double work = 0.0;    // of the base on the structures
+    double energy = 0.0;  // at the onset
+    // the piece: a part of the episode inside one interval, in closed form
+    double piece_start = 0.0;  // time in the interval
+  };
+
+  void tabulate(int state);
+  void tabulatePhasor(int state);
+  Tables& now()
+  {
+    return tables_[static_cast<std::size_t>(state_)];
+  }
+  const Tables& now() const
+  {
+    return tables_[static_cast<std::size_t>(state_)];
+  }
+  const LinearState& linearState(int state) const
+  {
+    return state == 0 ? model_->free() : model_->contact();
+  }
+  /// Distance from the switching surface, positive inside the present state, and its rate.
+  double side() const
+  {
+    return state_ == 0 ? 1.0 : -1.0;
+  }
+
+  void advanceInterval(ImpactSink& sink);
+  void locateSwitches(ImpactSink& sink);
+  void step(std::int64_t ticks, double time);
+  std::int64_t safeTicks(std::int64_t left);
+  std::int64_t departureTicks(std::int64_t left);
+  bool crossed() const;
+  void switchState(double time, ImpactSink& sink);
+
+  Vectors& vectors()
+  {
+    return vectors_[static_cast<std::size_t>(state_)];
+  }
+  const Vectors& vectors() const
+  {
+    return vectors_[static_cast<std::size_t>(state_)];
+  }
+  void rotate(Eigen::VectorXd& exponentials, int k) const;
+  void rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const;
+  void evaluate();
+  void evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const;
+  /// Bounds the derivative of the exponentials' part of the gap from now on; exact in order 2 and above.
+  double boundOfDerivative(int order) const;
+  double boundOfDerivative(int order, const Eigen::VectorXd& z) const;
+  void refreshBound();
+
+  void toCoordinates();
+  void toExponentials();
+  double energy(int state, const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const;
+  double acceleration(double time) const
+  {
+    return start_acceleration_ + slope_ * time;
+  }
+  double harmonicWork() const;
+
+  void beginEpisode(double offset, double elapsed, double approach_speed, double energy);
+  void beginPiece();
+  void endPiece();
+  void endEpisode(ImpactSink& sink, double energy);
+  void notePeak(double gap, double time);
+  void watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before);
+  struct GapSample
+  {
+    std::int64_t tick;
+    double gap, rate;
+  };
+  void refinePeak(double start, const GapSample& from, const GapSample& to, double third_derivative_bound, int depth);
+
+  std::shared_ptr<const SwitchedModel> model_;
+  bool phasor_;
+  double length_ = 0.0;
+  double tick_ = 0.0;
+  int doublings_ = 0;  // K
+  double drive_frequency_ = 0.0;
+  double drive_amplitude_ = 0.0;
+  std::array<Tables, 2> tables_;
+
+  int state_ = 0;
+  bool in_coordinates_ = true;  // the state is in displacement_ and velocity_, not yet in exponentials
+  std::array<Vectors, 2> vectors_;
+  double time_ = 0.0;  // in the interval
+  double start_acceleration_ = 0.0;
+  double slope_ = 0.0;
+  double gap_ = 0.0;
+  double rate_ = 0.0;
+  double bound_ = 0.0;       // B
+  double resolution_ = 0.0;  // rounding error of the gap
+  std::int64_t smallest_step_ = 1;
+  std::uint64_t intervals_ = 0;
+  std::uint64_t switches_ = 0;
+  std::uint64_t switch_limit_reached_ = 0;
+  std::uint64_t steps_total_ = 0;
+  std::uint64_t impacts_ = 0;
+  Episode episode_;
+};
+
+}  // namespace vibro_impact::core
