@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "lanes.h"
+
 namespace vibro_impact::core
 {
 namespace
@@ -36,7 +38,7 @@ SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool 
   for (int state = 0; state < 2; ++state)
   {
     const Eigen::Index modes = linearState(state).size();
-    const Eigen::Index half = modes + (phasor_ ? 1 : 0);
+    const Eigen::Index half = padded(modes + (phasor_ ? 1 : 0));
     Vectors& v = vectors_[static_cast<std::size_t>(state)];
     v.exponentials = v.before = v.trial = v.piece = Eigen::VectorXd::Zero(2 * half);
     v.displacement = v.velocity = Eigen::VectorXd::Zero(modes);
@@ -49,7 +51,7 @@ void SwitchedMotion::tabulate(int state)
 {
   const LinearState& linear = linearState(state);
   const Eigen::Index modes = linear.size();
-  const Eigen::Index half = modes + (phasor_ ? 1 : 0);
+  const Eigen::Index half = padded(modes + (phasor_ ? 1 : 0));
   Tables& t = tables_[static_cast<std::size_t>(state)];
 
   const Eigen::ArrayXd squared = linear.frequency.square();
@@ -94,13 +96,15 @@ void SwitchedMotion::tabulate(int state)
     t.momentum_integral(n) = integral.real();
     t.momentum_integral(half + n) = -integral.imag();
   }
+  t.kick_gap_integral = t.derivative.col(0).dot(t.kick);
+  t.kick_momentum_integral = t.momentum_integral.dot(t.kick);
 }
 
 void SwitchedMotion::tabulatePhasor(int state)
 {
   const LinearState& linear = linearState(state);
   const Eigen::Index modes = linear.size();
-  const Eigen::Index half = modes + 1;
+  const Eigen::Index half = padded(modes + 1);
   Tables& t = tables_[static_cast<std::size_t>(state)];
   const double omega = drive_frequency_;
   std::complex<double> weight = 0.0;
@@ -132,6 +136,7 @@ void SwitchedMotion::tabulatePhasor(int state)
 void SwitchedMotion::setInterval(double length)
 {
   length_ = length;
+  inverse_length_ = 1.0 / length;
   double highest = 0.0;
   for (int state = 0; state < 2; ++state)
   {
@@ -146,13 +151,13 @@ void SwitchedMotion::setInterval(double length)
   {
     Tables& t = tables_[static_cast<std::size_t>(state)];
     const Eigen::Index modes = linearState(state).size();
-    const Eigen::Index half = modes + (phasor_ ? 1 : 0);
+    const Eigen::Index half = padded(modes + (phasor_ ? 1 : 0));
     t.factor_re.resize(half, doublings_ + 1);
     t.factor_im.resize(half, doublings_ + 1);
     for (int k = 0; k <= doublings_; ++k)
     {
       const double time = std::ldexp(tick_, k);
-      for (Eigen::Index n = 0; n < half; ++n)
+      for (Eigen::Index n = 0; n < half; ++n)  // the modes, the phasor, the padding
       {
         const double size = n < modes ? std::exp(-t.decay(n) * time) : 1.0;
         const double angle = (n < modes ? t.damped(n) : drive_frequency_) * time;
@@ -181,6 +186,10 @@ void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
   }
   if (!in_coordinates_)
   {
+    if (state_ == 1)
+    {
+      closeIntegrals();
+    }
     toCoordinates();
   }
   drive_frequency_ = frequency;
@@ -333,36 +342,34 @@ void SwitchedMotion::rotate(Eigen::VectorXd& exponentials, int k) const
 {
   const Tables& t = now();
   const Eigen::Index half = t.factor_re.rows();
-  double* __restrict re = exponentials.data();
-  double* __restrict im = exponentials.data() + half;
-  const double* __restrict factor_re = t.factor_re.data() + k * half;
-  const double* __restrict factor_im = t.factor_im.data() + k * half;
-  for (Eigen::Index n = 0; n < half; ++n)
-  {
-    const double x = re[n];
-    const double y = im[n];
-    re[n] = x * factor_re[n] - y * factor_im[n];
-    im[n] = x * factor_im[n] + y * factor_re[n];
-  }
+  multiply(exponentials.data(), exponentials.data() + half, t.factor_re.data() + k * half,
+           t.factor_im.data() + k * half, half);
 }
 
 void SwitchedMotion::rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const
 {
-  for (int k = 0; ticks != 0; ++k, ticks >>= 1)
+  for (auto rest = static_cast<std::uint64_t>(ticks); rest != 0; rest &= rest - 1)
   {
-    if ((ticks & 1) != 0)
-    {
-      rotate(exponentials, k);
-    }
+    rotate(exponentials, __builtin_ctzll(rest));
   }
 }
 
 void SwitchedMotion::evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const
 {
   const Tables& t = now();
-  gap = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_ +
-        t.derivative.col(1).dot(exponentials);
-  rate = -t.line_compliance * slope_ + t.derivative.col(2).dot(exponentials);
+  const Eigen::Index size = exponentials.size();
+  gap = lineGap(time) + dot(t.derivative.data() + size, exponentials.data(), size);
+  rate = lineRate() + dot(t.derivative.data() + 2 * size, exponentials.data(), size);
+}
+
+double SwitchedMotion::lineGap(double time) const
+{
+  return now().line_constant - now().line_compliance * acceleration(time) + now().line_lag * slope_;
+}
+
+double SwitchedMotion::lineRate() const
+{
+  return -now().line_compliance * slope_;
 }
 
 void SwitchedMotion::evaluate()
@@ -397,26 +404,24 @@ void SwitchedMotion::refreshBound()
 
 void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
 {
-  const double slope = (to - from) / length_;
+  const double slope = (to - from) * inverse_length_;
   start_acceleration_ = from;
   time_ = 0.0;
+  double change = 0.0;
   if (in_coordinates_)
   {
     slope_ = slope;
-    toExponentials();
-    evaluate();
-    refreshBound();
+    startFromCoordinates();
   }
-  else if (slope != slope_)
+  else
   {
     // Displacement and velocity are continuous; the quasi-static part takes the new slope at once and z makes up for
     // it.
-    const double change = slope - slope_;
+    change = slope - slope_;
     slope_ = slope;
-    vectors().exponentials += change * now().kick;
     bound_ += std::abs(change) * now().kick_bound;
   }
-  advanceInterval(sink);
+  advanceInterval(change, sink);
 }
 
 void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
@@ -426,35 +431,66 @@ void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
   for (Vectors& v : vectors_)
   {
     const Eigen::Index half = v.exponentials.size() / 2;
-    v.exponentials(half - 1) = -drive_amplitude_;
-    v.exponentials(2 * half - 1) = 0.0;
+    v.exponentials(v.displacement.size()) = -drive_amplitude_;
+    v.exponentials(half + v.displacement.size()) = 0.0;
   }
   if (in_coordinates_)
   {
-    toExponentials();
-    evaluate();
-    refreshBound();
+    startFromCoordinates();
   }
-  advanceInterval(sink);
+  advanceInterval(0.0, sink);
 }
 
-void SwitchedMotion::advanceInterval(ImpactSink& sink)
+void SwitchedMotion::startFromCoordinates()
 {
+  toExponentials();
+  evaluate();
+  refreshBound();
   if (state_ == 1)
   {
+    openIntegrals();
+  }
+}
+
+void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
+{
+  Vectors& v = vectors();
+  const Tables& t = now();
+  if (state_ == 1)
+  {
+    v.before = v.exponentials;
+    if (slope_change != 0.0)
+    {
+      addScaled(v.before.data(), slope_change, t.kick.data(), t.kick.size());
+      episode_.gap_integral -= slope_change * t.kick_gap_integral;
+      episode_.momentum_form += slope_change * t.kick_momentum_integral;
+    }
     beginPiece();
   }
   const double distance = side() * gap_;
   const double reach = distance + side() * rate_ * length_ - 0.5 * bound_ * length_ * length_;
   if (distance >= 0.0 && reach >= 0.0)
   {
-    step(std::int64_t{1} << doublings_, 0.0);
+    const double gap_before = gap_;
+    const double rate_before = rate_;
+    const Eigen::Index half = t.factor_re.rows();
+    kickMultiplyEvaluate(v.exponentials.data(), slope_change, t.kick.data(), t.factor_re.data() + doublings_ * half,
+                         t.factor_im.data() + doublings_ * half, t.derivative.data() + 2 * half,
+                         t.derivative.data() + 4 * half, half, gap_, rate_);
+    time_ = length_;
+    gap_ += lineGap(time_);
+    rate_ += lineRate();
+    if (state_ == 1)
+    {
+      watchPeak(0.0, std::int64_t{1} << doublings_, gap_before, rate_before);
+    }
   }
   else
   {
+    addScaled(v.exponentials.data(), slope_change, t.kick.data(), t.kick.size());
     locateSwitches(sink);
+    time_ = length_;
   }
-  time_ = length_;
   if (state_ == 1)
   {
     endPiece();
@@ -598,6 +634,7 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   if (state_ == 1)
   {
     endPiece();
+    closeIntegrals();
     episode_.elapsed -= late;
     episode_.impact.separation_speed = speed;
   }
@@ -621,8 +658,8 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   if (phasor_)
   {
     const Eigen::Index half = to.exponentials.size() / 2;
-    to.exponentials(half - 1) = from.exponentials(from_half - 1);
-    to.exponentials(2 * half - 1) = from.exponentials(2 * from_half - 1);
+    to.exponentials(to.displacement.size()) = from.exponentials(from.displacement.size());
+    to.exponentials(half + to.displacement.size()) = from.exponentials(from_half + from.displacement.size());
   }
   toExponentials();
   evaluate();
@@ -631,6 +668,7 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   if (state_ == 1)
   {
     beginEpisode(time - late, late, speed, energy_before);
+    openIntegrals();
     beginPiece();
   }
   else
@@ -645,10 +683,18 @@ void SwitchedMotion::interrupt(ImpactSink& sink)
   {
     const double stored = energy();
     episode_.impact.cut_short = true;
+    if (!in_coordinates_)
+    {
+      closeIntegrals();
+    }
     endEpisode(sink, stored);
     // What is left of the episode is not whole either.
     beginEpisode(0.0, 0.0, 0.0, stored);
     episode_.impact.cut_short = true;
+    if (!in_coordinates_)
+    {
+      openIntegrals();
+    }
   }
 }
 
@@ -666,37 +712,68 @@ void SwitchedMotion::beginEpisode(double offset, double elapsed, double approach
   episode_.smallest_gap = gap_;
 }
 
+// Over a piece of the episode inside one interval the integral of the gap is that of a line plus J(z_end) - J(z_start),
+// J being a linear form. From piece to piece z only changes by the kick of a new slope, so that the forms cancel but
+// for these kicks and the two ends of the episode. The base's work on the structures, W = -integral a q' dt with q =
+// sum Gamma eta, is by parts
+// -[a q] + sum over the pieces of s integral q dt, where again [a q] only counts at the ends of the episode.
+
+void SwitchedMotion::openIntegrals()
+{
+  const Tables& t = now();
+  const Eigen::VectorXd& z = vectors().exponentials;
+  episode_.gap_integral -= dot(t.derivative.data(), z.data(), z.size());
+  if (!phasor_)
+  {
+    episode_.momentum_form = dot(t.momentum_integral.data(), z.data(), z.size());
+    episode_.work += acceleration(time_) * momentum();
+  }
+}
+
+void SwitchedMotion::closeIntegrals()
+{
+  const Eigen::VectorXd& z = vectors().exponentials;
+  episode_.gap_integral += dot(now().derivative.data(), z.data(), z.size());
+  if (!phasor_)
+  {
+    episode_.work -= acceleration(time_) * momentum();
+  }
+}
+
+double SwitchedMotion::momentum() const
+{
+  const Tables& t = now();
+  const Eigen::VectorXd& z = vectors().exponentials;
+  return t.momentum_constant - t.momentum_compliance * acceleration(time_) + t.momentum_lag * slope_ +
+         dot(t.momentum.data(), z.data(), z.size());
+}
+
 void SwitchedMotion::beginPiece()
 {
   episode_.piece_start = time_;
-  vectors().piece = vectors().exponentials;
+  if (phasor_)
+  {
+    vectors().piece = vectors().exponentials;
+  }
 }
 
-/// Integrals over the piece in closed form. The base's work on the structures is W = -integral a q' dt with q = sum
-/// Gamma eta.
 void SwitchedMotion::endPiece()
 {
   const Tables& t = now();
-  const Vectors& v = vectors();
   const double duration = time_ - episode_.piece_start;
-  const double from = acceleration(episode_.piece_start);
-  const double to = acceleration(time_);
-  const double mean = 0.5 * (from + to);
-  episode_.gap_integral += duration * (t.line_constant - t.line_compliance * mean + t.line_lag * slope_) +
-                           (t.derivative.col(0).dot(v.exponentials) - t.derivative.col(0).dot(v.piece));
+  const double mean = 0.5 * (acceleration(episode_.piece_start) + acceleration(time_));
+  episode_.gap_integral += duration * (t.line_constant - t.line_compliance * mean + t.line_lag * slope_);
   if (phasor_)
   {
     episode_.work += harmonicWork();
   }
   else
   {
-    // by parts: W = -[a q] + s integral q dt
-    const double constant = t.momentum_constant + t.momentum_lag * slope_;
-    const double momentum_from = constant - t.momentum_compliance * from + t.momentum.dot(v.piece);
-    const double momentum_to = constant - t.momentum_compliance * to + t.momentum.dot(v.exponentials);
-    const double integral = duration * (constant - t.momentum_compliance * mean) +
-                            (t.momentum_integral.dot(v.exponentials) - t.momentum_integral.dot(v.piece));
-    episode_.work += slope_ * integral - (to * momentum_to - from * momentum_from);
+    const Eigen::VectorXd& z = vectors().exponentials;
+    const double form = dot(t.momentum_integral.data(), z.data(), z.size());
+    const double line = t.momentum_constant - t.momentum_compliance * mean + t.momentum_lag * slope_;
+    episode_.work += slope_ * (duration * line + (form - episode_.momentum_form));
+    episode_.momentum_form = form;
   }
   episode_.elapsed += duration;
 }
@@ -709,7 +786,7 @@ double SwitchedMotion::harmonicWork() const
   const Vectors& v = vectors();
   const LinearState& linear = linearState(state_);
   const Eigen::Index modes = linear.size();
-  const Eigen::Index half = modes + 1;
+  const Eigen::Index half = v.piece.size() / 2;
   const auto entry = [half](const Eigen::VectorXd& exponentials, Eigen::Index n)
   { return std::complex<double>(exponentials(n), exponentials(half + n)); };
   const std::complex<double> drive_from = entry(v.piece, modes);

@@ -128,6 +128,8 @@ private:
     Eigen::ArrayXd transfer_re, transfer_im;  // H_n
     Eigen::VectorXd kick;                     // change of z per change of the slope s, [re; im]
     double kick_bound = 0.0;                  // what it adds to B
+    double kick_gap_integral = 0.0;           // its integral forms
+    double kick_momentum_integral = 0.0;
     // The line p(t) = line_constant - line_compliance a + line_lag s of the gap, and the same of q = sum Gamma eta.
     double line_constant = 0.0, line_compliance = 0.0, line_lag = 0.0;
     double momentum_constant = 0.0, momentum_compliance = 0.0, momentum_lag = 0.0;
@@ -141,7 +143,7 @@ private:
   /// What moves, in the sizes of one state.
   struct Vectors
   {
-    Eigen::VectorXd exponentials;  // [Re z; Im z], the drive's phasor last in each half
+    Eigen::VectorXd exponentials;  // [Re z; Im z], each half the modes, the drive's phasor, and padding
     Eigen::VectorXd before, trial,
         piece;  // exponentials at other times: before a step, on trial, at the start of a piece
     Eigen::VectorXd displacement, velocity;  // eta and eta'
@@ -157,8 +159,9 @@ private:
     double gap_integral = 0.0;
     double work = 0.0;    // of the base on the structures
     double energy = 0.0;  // at the onset
-    // the piece: a part of the episode inside one interval, in closed form
-    double piece_start = 0.0;  // time in the interval
+    // the piece: the part of the episode inside the present interval
+    double piece_start = 0.0;    // time in the interval
+    double momentum_form = 0.0;  // integral form of sum Gamma z at its start
   };
 
   void tabulate(int state);
@@ -181,7 +184,8 @@ private:
     return state_ == 0 ? 1.0 : -1.0;
   }
 
-  void advanceInterval(ImpactSink& sink);
+  void startFromCoordinates();
+  void advanceInterval(double slope_change, ImpactSink& sink);
   void locateSwitches(ImpactSink& sink);
   void step(std::int64_t ticks, double time);
   std::int64_t safeTicks(std::int64_t left);
@@ -201,7 +205,9 @@ private:
   void rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const;
   void evaluate();
   void evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const;
-  /// Bounds the derivative of the exponentials' part of the gap from now on; exact in order 2 and above.
+  double lineGap(double time) const;
+  double lineRate() const;
+  /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own.
   double boundOfDerivative(int order) const;
   double boundOfDerivative(int order, const Eigen::VectorXd& z) const;
   void refreshBound();
@@ -216,6 +222,9 @@ private:
   double harmonicWork() const;
 
   void beginEpisode(double offset, double elapsed, double approach_speed, double energy);
+  void openIntegrals();
+  void closeIntegrals();
+  double momentum() const;
   void beginPiece();
   void endPiece();
   void endEpisode(ImpactSink& sink, double energy);
@@ -231,6 +240,7 @@ private:
   std::shared_ptr<const SwitchedModel> model_;
   bool phasor_;
   double length_ = 0.0;
+  double inverse_length_ = 0.0;
   double tick_ = 0.0;
   int doublings_ = 0;  // K
   double drive_frequency_ = 0.0;
@@ -247,7 +257,6 @@ private:
   double rate_ = 0.0;
   double bound_ = 0.0;       // B
   double resolution_ = 0.0;  // rounding error of the gap
-  std::int64_t smallest_step_ = 1;
   std::uint64_t intervals_ = 0;
   std::uint64_t switches_ = 0;
   std::uint64_t switch_limit_reached_ = 0;
