@@ -20,7 +20,10 @@ constexpr double derived_max = 1.0e+60;
 
 // k L^3/(E I) outside of this is, in double precision, no spring at all or a rigid one whose force is rounding noise.
 constexpr double contact_ratio_min = 1.0e-6;
-constexpr double contact_ratio_max = 1.0e+12;
+constexpr double contact_ratio_max = 1.0e+10;
+
+// Nearer to a support, in lengths of the beam, the contact point moves by no more than rounding.
+constexpr double end_margin = 1.0e-6;
 
 std::string text(double value, int digits = std::numeric_limits<double>::digits10)
 {
@@ -108,8 +111,10 @@ private:
     const double x = beam.contact_location;
     if (has_length)
     {
-      good &= check(x > 0.0 && x < beam.length, name + ".contact_location", x,
-                    "a number > 0 and < " + text(beam.length) + ", the length (m)");
+      const double margin = end_margin * beam.length;
+      good &= check(x >= margin && beam.length - x >= margin, name + ".contact_location", x,
+                    "a number > 0 and < " + text(beam.length) + ", the length (m), no nearer to either than " +
+                        text(end_margin) + " of it");
     }
     else
     {

@@ -175,7 +175,8 @@ TEST(Configuration, RefusesWhatIsOutOfRange)
   EXPECT_EQ(complaint(with("length: 0.0529", "length: 0")),
             "my.yaml: beam1.length = 0: must be a finite number > 0 (m)");
   EXPECT_EQ(complaint(with("contact_location: 0.02645", "contact_location: 0.0529")),
-            "my.yaml: beam1.contact_location = 0.0529: must be a number > 0 and < 0.0529, the length (m)");
+            "my.yaml: beam1.contact_location = 0.0529: must be a number > 0 and < 0.0529, the length (m), no nearer to "
+            "either than 1e-06 of it");
   EXPECT_EQ(complaint(with("free: 0.01", "free: 1")),
             "my.yaml: damping.free = 1: must be a number >= 0 and < 1 (ratio of critical damping)");
   EXPECT_THAT(complaint(with("stiffness: 24309.5", "stiffness: -1")), HasSubstr("contact.stiffness = -1: must be"));

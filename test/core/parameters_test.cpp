@@ -109,6 +109,21 @@ TEST(Parameters, EveryRangeIsChecked)
   }
 }
 
+TEST(Parameters, TheContactKeepsAwayFromTheSupports)
+{
+  SystemParameters parameters = goodParameters();
+  for (const double share : {1.0e-7, 1.0 - 1.0e-7, 1.0, 1.5})
+  {
+    parameters.beam1.contact_location = share * parameters.beam1.length;
+    EXPECT_EQ(complaint(parameters).find("beam1.contact_location = "), 0u) << share;
+  }
+  for (const double share : {1.0e-5, 1.0 - 1.0e-5})
+  {
+    parameters.beam1.contact_location = share * parameters.beam1.length;
+    EXPECT_EQ(complaint(parameters), "") << share;
+  }
+}
+
 TEST(Parameters, AllFaultsAreInOneMessage)
 {
   SystemParameters parameters = goodParameters();
@@ -116,7 +131,8 @@ TEST(Parameters, AllFaultsAreInOneMessage)
   parameters.contact.stiffness = -1.0;
   parameters.damping.free = 2.0;
   EXPECT_EQ(complaint(parameters),
-            "beam1.contact_location = 0.06: must be a number > 0 and < 0.0529, the length (m); "
+            "beam1.contact_location = 0.06: must be a number > 0 and < 0.0529, the length (m), no nearer to either "
+            "than 1e-06 of it; "
             "contact.stiffness = -1: must be a finite number > 0 (N/m); "
             "damping.free = 2: must be a number >= 0 and < 1 (ratio of critical damping)");
 }
@@ -137,10 +153,12 @@ TEST(Parameters, ProductsThatOverflowOrVanishAreRefused)
   EXPECT_EQ(key(parameters), "beam1: mass per length rho A");
   parameters = goodParameters();
   parameters.beam1.length = 1.0e200;
+  parameters.beam1.contact_location = 0.5e200;
   EXPECT_EQ(key(parameters), "beam1: mass");
   parameters = goodParameters();
-  parameters.beam1.contact_location = 1.0e-300;
-  EXPECT_EQ(key(parameters), "beam1: static receptance of the contact point");
+  parameters.beam1.length = 1.0e-40;
+  parameters.beam1.contact_location = 0.5e-40;
+  EXPECT_EQ(key(parameters), "beam1: lowest natural frequency");
   parameters = goodParameters();
   parameters.contact.clearance = 1.0e300;
   EXPECT_EQ(key(parameters), "contact: stiffness times clearance, without sign");

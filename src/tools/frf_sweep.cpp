@@ -1,0 +1,243 @@
+// The repetitive impact frequency response of a configuration, straight from the core.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "vibro_impact/config/configuration.h"
+#include "vibro_impact/config/model_summary.h"
+#include "vibro_impact/config/number.h"
+#include "vibro_impact/config/output_directory.h"
+#include "vibro_impact/config/response_table.h"
+#include "vibro_impact/config/sweep.h"
+
+namespace
+{
+using namespace vibro_impact;
+namespace po = boost::program_options;
+
+struct UsageError : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+struct Arguments
+{
+  std::string configuration;
+  std::string out;
+  config::SweepOptions sweep;
+};
+
+double number(const po::variables_map& given, const std::string& option, double least, double greatest)
+{
+  const std::string text = given[option].as<std::string>();
+  const auto value = config::parseNumber(text);
+  if (!value || *value < least || *value > greatest)
+  {
+    throw UsageError("--" + option + " = \"" + text + "\": must be a number from " + config::formatNumber(least) +
+                     " to " + config::formatNumber(greatest));
+  }
+  return *value;
+}
+
+std::int64_t wholeNumber(const po::variables_map& given, const std::string& option, std::int64_t greatest)
+{
+  const std::string text = given[option].as<std::string>();
+  const auto value = config::parseInteger(text);
+  if (!value || *value < 1 || *value > greatest)
+  {
+    throw UsageError("--" + option + " = \"" + text + "\": must be a whole number from 1 to " +
+                     std::to_string(greatest));
+  }
+  return *value;
+}
+
+config::SweepStart start(const po::variables_map& given)
+{
+  if (given.count("follow") == 0)
+  {
+    return config::SweepStart::rest;
+  }
+  const std::string text = given["follow"].as<std::string>();
+  if (text != "up" && text != "down")
+  {
+    throw UsageError("--follow = \"" + text + "\": must be up or down");
+  }
+  return text == "up" ? config::SweepStart::follow_up : config::SweepStart::follow_down;
+}
+
+po::options_description visibleOptions()
+{
+  po::options_description options("Options", 100);
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  auto add = options.add_options();
+  add("from", text("A"), "lowest drive frequency omega*, in lowest natural frequencies of beam 1");
+  add("to", text("B"), "highest drive frequency omega*");
+  add("points", text("N"), "number of equally spaced frequencies, both ends included");
+  add("cycles", text("C")->default_value("400"), "drive cycles at each frequency; the last 15 impacts are evaluated");
+  add("acceleration", text("a")->default_value("1"), "amplitude of the base acceleration, m/s^2");
+  add("follow", text("up|down"), "start each frequency as the one before it ended, not from rest");
+  add("threads", text("n"), "threads of a sweep from rest; all cores by default");
+  add("out", text("DIR"), "directory for frf.csv, impacts.csv and model.csv; created if missing");
+  add("help,h", "show this text");
+  return options;
+}
+
+po::variables_map parse(int argc, char** argv)
+{
+  po::options_description all = visibleOptions();
+  all.add_options()("configuration", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("configuration", -1);
+  po::variables_map given;
+  try
+  {
+    // Long options only in full, so that a misspelt one is not taken for another.
+    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(), given);
+  }
+  catch (const po::error& error)
+  {
+    throw UsageError(error.what());
+  }
+  return given;
+}
+
+Arguments interpret(const po::variables_map& given)
+{
+  for (const char* option : {"from", "to", "points", "out"})
+  {
+    if (given.count(option) == 0)
+    {
+      throw UsageError("--" + std::string(option) + " is missing");
+    }
+  }
+  const std::size_t files =
+      given["configuration"].empty() ? 0 : given["configuration"].as<std::vector<std::string>>().size();
+  if (files != 1)
+  {
+    throw UsageError(std::to_string(files) + " configuration files are given: must be one");
+  }
+  Arguments arguments;
+  arguments.configuration = given["configuration"].as<std::vector<std::string>>().front();
+  arguments.out = given["out"].as<std::string>();
+  config::SweepOptions& sweep = arguments.sweep;
+  sweep.from = number(given, "from", 1.0e-3, 1.0e5);
+  sweep.to = number(given, "to", 1.0e-3, 1.0e5);
+  sweep.points = static_cast<int>(wholeNumber(given, "points", 1'000'000));
+  sweep.cycles = static_cast<std::uint64_t>(wholeNumber(given, "cycles", 1'000'000'000));
+  sweep.acceleration = number(given, "acceleration", 1.0e-9, 1.0e9);
+  sweep.start = start(given);
+  sweep.threads = given.count("threads") != 0 ? static_cast<unsigned>(wholeNumber(given, "threads", 1024))
+                                              : std::max(1u, std::thread::hardware_concurrency());
+  if (sweep.points == 1 ? sweep.from != sweep.to : sweep.from >= sweep.to)
+  {
+    throw UsageError("--from = " + given["from"].as<std::string>() + ": must be " +
+                     (sweep.points == 1 ? "equal to" : "less than") + " --to = " + given["to"].as<std::string>() +
+                     (sweep.points == 1 ? " for one point" : ""));
+  }
+  return arguments;
+}
+
+/// A line on stderr: renewed in place on a terminal, written every few seconds elsewhere.
+class Progress
+{
+public:
+  explicit Progress(int points) : points_(static_cast<std::size_t>(points))
+  {
+  }
+
+  void operator()(std::size_t done)
+  {
+    const auto now = std::chrono::steady_clock::now();
+    const bool last = done == points_;
+    if (now < next_ && !(last && terminal_))
+    {
+      return;
+    }
+    next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));
+    std::cerr << (terminal_ ? "\r" : "") << done << " of " << points_ << " frequencies"
+              << (terminal_ && !last ? "" : "\n") << std::flush;
+  }
+
+private:
+  std::size_t points_;
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+};
+
+void report(const config::ModelSummary& model, const std::vector<core::Response>& responses, const std::string& out)
+{
+  const auto frequency = [](const std::optional<double>& value)
+  { return value ? config::formatNumber(std::round(*value * 1000.0) / 1000.0) + " Hz" : std::string("none"); };
+  std::cout << "lowest frequency that moves the contact: free " << frequency(model.free_frequency_hz) << ", in contact "
+            << frequency(model.contact_frequency_hz);
+  if (model.frequency_ratio)
+  {
+    std::cout << ", ratio " << std::fixed << std::setprecision(4) << *model.frequency_ratio;
+  }
+  std::cout << "\nmapping loss at a switch: " << std::defaultfloat << std::setprecision(3)
+            << 100.0 * model.mapping_loss.front() << " % of the lowest mode's energy, at most "
+            << 100.0 * *std::max_element(model.mapping_loss.begin(), model.mapping_loss.end()) << " % of a mode's\n";
+  const auto peak = std::max_element(responses.begin(), responses.end(),
+                                     [](const core::Response& a, const core::Response& b)
+                                     { return a.row.impulse_mean < b.row.impulse_mean; });
+  const auto steady = std::count_if(responses.begin(), responses.end(),
+                                    [](const core::Response& response) { return response.row.steady; });
+  std::cout << "greatest mean impulse: " << std::setprecision(6) << peak->row.impulse_mean << " N s (I* "
+            << peak->row.impulse_star_mean << ") at omega* " << peak->row.omega_star << ", period " << peak->row.period
+            << "\nsteady: " << steady << " of " << responses.size() << " frequencies\nwritten to " << out
+            << ": frf.csv, impacts.csv, model.csv" << std::endl;
+}
+
+void run(const Arguments& arguments)
+{
+  const auto model = std::make_shared<const core::SwitchedModel>(config::loadFile(arguments.configuration));
+  const config::OutputDirectory out(arguments.out);
+  const auto responses = config::sweep(model, arguments.sweep, Progress(arguments.sweep.points));
+  const config::ModelSummary summary = config::summarize(*model);
+  out.write({config::responseTable(responses), config::impactTable(responses), config::modelTable(summary)});
+  report(summary, responses, arguments.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  try
+  {
+    const po::variables_map given = parse(argc, argv);
+    if (given.count("help") != 0)
+    {
+      std::cout << "frf_sweep CONFIG --from A --to B --points N --out DIR [options]\n\n"
+                   "Computes the repetitive impact frequency response of the configuration in the file CONFIG.\n\n"
+                << visibleOptions();
+      return 0;
+    }
+    run(interpret(given));
+    return 0;
+  }
+  catch (const UsageError& error)
+  {
+    std::cerr << "frf_sweep: " << error.what() << " (see frf_sweep --help)" << std::endl;
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "frf_sweep: " << error.what() << std::endl;
+    return 1;
+  }
+}
