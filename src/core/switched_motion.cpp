@@ -146,6 +146,7 @@ void SwitchedMotion::setInterval(double length)
   const double tolerance = std::max(1.0e-12, highest > 0.0 ? 1.0e-9 * two_pi / highest : 0.0);
   doublings_ = std::clamp(static_cast<int>(std::ceil(std::log2(length / tolerance))), 10, 60);
   tick_ = std::ldexp(length, -doublings_);
+  switch_limit_ = switch_allowance + static_cast<std::int64_t>(std::min(1.0e9, 2.0 * length * highest / two_pi));
 
   for (int state = 0; state < 2; ++state)
   {
@@ -526,14 +527,14 @@ void SwitchedMotion::locateSwitches(ImpactSink& sink)
   const std::int64_t total = std::int64_t{1} << doublings_;
   std::int64_t tick = 0;
   std::int64_t smallest = 1;
-  int switches = 0;
+  std::int64_t switches = 0;
   int steps = 0;
   refreshBound();
   while (tick < total)
   {
     const std::int64_t left = total - tick;
     const double time = static_cast<double>(tick) * tick_;
-    if (switches == switch_limit)
+    if (switches >= switch_limit_ && state_ == 1)
     {
       ++switch_limit_reached_;
       step(left, time);

@@ -36,8 +36,10 @@ namespace vibro_impact::core
 class SwitchedMotion
 {
 public:
-  /// At most this many switches in one interval; further ones are not made before its end, and the interval is counted.
-  static constexpr int switch_limit = 256;
+  /// No more switches are made in one interval than `switch_allowance` and one per half period of the highest
+  /// frequency. Beyond these the motion stays in S1, where energy is neither made nor lost, to the end of the interval,
+  /// and the interval is counted.
+  static constexpr int switch_allowance = 256;
 
   /// Steps in one interval without a switch after which the smallest step, one tick, is doubled (and again after as
   /// many). A crossing that such a step overruns is still found by halving it; only a pair of crossings closer than the
@@ -243,6 +245,7 @@ private:
   double inverse_length_ = 0.0;
   double tick_ = 0.0;
   int doublings_ = 0;  // K
+  std::int64_t switch_limit_ = switch_allowance;
   double drive_frequency_ = 0.0;
   double drive_amplitude_ = 0.0;
   std::array<Tables, 2> tables_;
