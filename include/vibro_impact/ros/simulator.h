@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+#include <vibro_impact/BaseExcitation.h>
+#include <vibro_impact/ContactForce.h>
+#include <vibro_impact/Gap.h>
+#include <vibro_impact/Impact.h>
+
+#include "vibro_impact/ros/extremes.h"
+#include "vibro_impact/ros/simulator_parameters.h"
+#include "vibro_impact/ros/simulator_statistics.h"
+#include "vibro_impact/ros/source_guard.h"
+#include "vibro_impact/ros/stream_simulation.h"
+
+namespace vibro_impact::graph
+{
+/// The simulator on the graph: base_excitation in, gap, contact_force and impact out.
+///
+/// All callbacks must come from one thread at a time (the global queue of a node, or a nodelet's single-threaded one).
+class Simulator
+{
+public:
+  /// Reads the private parameters, advertises, subscribes, in that order. Throws config::Error with all faults of the
+  /// parameters before anything shows on the graph.
+  Simulator(ros::NodeHandle node, ros::NodeHandle private_node);
+
+  /// The stream ends: an open impact is published as cut short.
+  void finish();
+
+private:
+  void onExcitation(const ros::MessageEvent<const BaseExcitation>& event);
+  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void onWaiting(const ros::WallTimerEvent& event);
+
+  void publish(const StreamSimulation::Answer& answer);
+  void publishModelInfo(ros::NodeHandle& node);
+  void log(const Verdict& verdict) const;
+
+  SimulatorParameters parameters_;
+  std::shared_ptr<const core::SwitchedModel> model_;
+  StreamSimulation simulation_;
+  ExtremesHold extremes_;
+  SourceGuard guard_;
+  SimulatorStatistics statistics_;
+  std::optional<ros::SteadyTime> last_input_;
+
+  // Buffers, so that a block allocates nothing once the largest has been seen.
+  Samples excitation_;
+  Gap gap_;
+  ContactForce force_;
+  Impact impact_;
+
+  ros::Publisher gap_publisher_;
+  ros::Publisher force_publisher_;
+  ros::Publisher impact_publisher_;
+  ros::Publisher model_info_publisher_;
+  ros::Publisher wrench_publisher_;
+  ros::Publisher gap_now_publisher_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::WallTimer diagnostic_timer_;
+  ros::WallTimer waiting_timer_;
+  ros::ServiceServer reset_server_;
+  ros::Subscriber excitation_subscriber_;
+};
+
+}  // namespace vibro_impact::graph

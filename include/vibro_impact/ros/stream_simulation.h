@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/simulation.h"
+#include "vibro_impact/core/switched_model.h"
+#include "vibro_impact/ros/samples.h"
+#include "vibro_impact/ros/stream_rules.h"
+
+namespace vibro_impact::graph
+{
+/// An impact on the time axis of its stream.
+struct StampedImpact
+{
+  core::Impact impact;  ///< `interval` is the number (seq) of the excitation sample at or before the onset
+  Stamp stamp = 0;      ///< of the onset: the time of that sample plus the offset, ns
+};
+
+/// A simulation that follows an excitation stream by the rules of time. Its time is the stream's: it never asks a
+/// clock.
+///
+/// The same samples give the same impacts (number, seq, offset and all that was computed) bit for bit, however they are
+/// cut into blocks; exactly stamped samples give the same stamps as well.
+class StreamSimulation : private core::ImpactSink
+{
+public:
+  /// What one block, reset() or finish() brought.
+  struct Answer
+  {
+    Verdict verdict;
+    Samples gap;                         ///< m; one sample for each of the block, none if it was refused
+    Samples force;                       ///< N, likewise
+    std::vector<StampedImpact> impacts;  ///< in order of release
+    std::uint64_t switch_limits = 0;     ///< sample intervals in which the bound on switches was reached
+  };
+
+  StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits);
+
+  /// Judges a block of base acceleration (m/s^2) and, unless it is refused, advances over it. A refused block leaves
+  /// the state untouched. The answer holds until the next call.
+  const Answer& advance(const Samples& excitation);
+
+  /// Back to rest; the next block starts a stream. An open episode is answered as cut short.
+  const Answer& reset();
+
+private:
+  void onImpact(const core::Impact& impact) override;
+  void bridge(std::uint64_t missing, double from, double to);
+  void clearAnswer();
+  void rest();
+
+  std::shared_ptr<const core::SwitchedModel> model_;
+  StreamRules rules_;
+  std::optional<core::SampledSimulation> simulation_;
+  std::uint64_t first_seq_ = 0;  ///< the sample that found the model at rest
+  bool carried_over_ = false;    ///< the open episode began before the block taken last
+  Answer answer_;
+};
+
+}  // namespace vibro_impact::graph

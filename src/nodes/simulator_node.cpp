@@ -1,0 +1,54 @@
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+
+#include "vibro_impact/ros/simulator.h"
+
+namespace
+{
+/// What is waiting when the end comes is still simulated, for at most this long, s.
+constexpr double longest_drain = 5.0;
+/// roscpp sends in the background and drops at its end what it has not sent yet, s.
+constexpr double linger = 0.3;
+
+volatile std::sig_atomic_t stop = 0;
+
+void onSignal(int /*signal*/)
+{
+  stop = 1;
+}
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  ros::init(argc, argv, "simulator", ros::init_options::NoSigintHandler);
+  // Lives as long as there may be something to log: roscpp and its log end with the last handle.
+  const ros::NodeHandle node;
+  try
+  {
+    vibro_impact::graph::Simulator simulator(node, ros::NodeHandle("~"));
+    std::signal(SIGINT, onSignal);
+    std::signal(SIGTERM, onSignal);
+    ros::CallbackQueue& queue = *ros::getGlobalCallbackQueue();
+    while (stop == 0 && ros::ok())
+    {
+      queue.callAvailable(ros::WallDuration(0.1));
+    }
+    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(longest_drain);
+    while (ros::ok() && !queue.isEmpty() && ros::WallTime::now() < end)
+    {
+      queue.callOne();
+    }
+    simulator.finish();
+    ros::WallDuration(linger).sleep();
+  }
+  catch (const std::exception& error)
+  {
+    ROS_FATAL_STREAM(error.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

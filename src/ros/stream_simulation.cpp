@@ -1,0 +1,113 @@
+#include "vibro_impact/ros/stream_simulation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace vibro_impact::graph
+{
+StreamSimulation::StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits)
+    : model_(std::move(model)), rules_(limits)
+{
+}
+
+const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitation)
+{
+  clearAnswer();
+  answer_.verdict = rules_.judge(excitation);
+  const Verdict::Action action = answer_.verdict.action;
+  if (action == Verdict::Action::Refuse)
+  {
+    return answer_;
+  }
+
+  if (action == Verdict::Action::Start || action == Verdict::Action::Restart)
+  {
+    rest();  // an open episode is dated on the old stream
+    if (!simulation_ || simulation_->samplePeriod() != excitation.sample_period)
+    {
+      simulation_.emplace(model_, excitation.sample_period);
+    }
+    first_seq_ = excitation.seq;
+    carried_over_ = false;
+  }
+
+  const std::uint64_t switch_limits = simulation_->switchLimitReached();
+  const bool was_in_contact = simulation_->inContact();
+  const std::size_t cut_short = answer_.impacts.size();
+  const double last_sample = rules_.lastSample();
+  rules_.take(excitation, action, carried_over_);
+
+  if (action == Verdict::Action::Bridge)
+  {
+    bridge(answer_.verdict.missing, last_sample, excitation.values.front());
+  }
+  const std::size_t count = excitation.values.size();
+  for (Samples* answer : {&answer_.gap, &answer_.force})
+  {
+    answer->stamp = excitation.stamp;
+    answer->seq = excitation.seq;
+    answer->sample_period = excitation.sample_period;
+    answer->values.resize(count);
+  }
+  simulation_->advance(excitation.values.data(), count, answer_.gap.values.data(), answer_.force.values.data(), *this);
+
+  carried_over_ = was_in_contact && simulation_->inContact() && answer_.impacts.size() == cut_short;
+  answer_.switch_limits = simulation_->switchLimitReached() - switch_limits;
+  return answer_;
+}
+
+const StreamSimulation::Answer& StreamSimulation::reset()
+{
+  clearAnswer();
+  rest();
+  return answer_;
+}
+
+void StreamSimulation::rest()
+{
+  // A preloaded contact at rest is an open episode, too: before a stream has begun there is nothing to cut short.
+  if (rules_.started())
+  {
+    simulation_->reset(*this);
+    rules_.forget();
+  }
+}
+
+void StreamSimulation::onImpact(const core::Impact& impact)
+{
+  StampedImpact stamped{impact, 0};
+  stamped.impact.interval += first_seq_;
+  stamped.stamp = rules_.clock().at(stamped.impact.interval) + std::llround(impact.offset * 1.0e9);
+  answer_.impacts.push_back(stamped);
+}
+
+void StreamSimulation::bridge(std::uint64_t missing, double from, double to)
+{
+  constexpr std::uint64_t chunk = 256;
+  std::array<double, chunk> acceleration;
+  std::array<double, chunk> gap;
+  std::array<double, chunk> force;
+  const double slope = (to - from) / static_cast<double>(missing + 1);
+  for (std::uint64_t first = 0; first < missing; first += chunk)
+  {
+    const std::uint64_t count = std::min(chunk, missing - first);
+    for (std::uint64_t i = 0; i < count; ++i)
+    {
+      acceleration[i] = from + slope * static_cast<double>(first + i + 1);
+    }
+    simulation_->advance(acceleration.data(), count, gap.data(), force.data(), *this);
+  }
+}
+
+void StreamSimulation::clearAnswer()
+{
+  answer_.verdict = {};
+  answer_.gap.values.clear();
+  answer_.force.values.clear();
+  answer_.impacts.clear();
+  answer_.switch_limits = 0;
+}
+
+}  // namespace vibro_impact::graph

@@ -1,0 +1,183 @@
+#!/usr/bin/python3
+"""The simulator as a process: how it starts, how it refuses to, and how it ends."""
+
+import math
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rospkg
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from roslib.packages import find_node
+from rosgraph_msgs.msg import Log
+
+from vibro_impact.msg import BaseExcitation, Gap, Impact
+
+# Longer than anything takes on a busy machine, s.
+PATIENCE = 30.0
+PERIOD = 2.0e-5
+
+
+def configuration():
+    path = os.path.join(rospkg.RosPack().get_path("vibro_impact"), "config", "limiting_case.yaml")
+    with open(path) as stream:
+        return yaml.safe_load(stream)
+
+
+def block(seq, acceleration, begin=1700000000):
+    message = BaseExcitation()
+    message.header.stamp = rospy.Time(begin) + rospy.Duration(seq * PERIOD)
+    message.seq = seq
+    message.sample_period = PERIOD
+    message.acceleration = acceleration
+    return message
+
+
+def wait_until(condition):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        if rospy.is_shutdown() or time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+class SimulatorProcessTest(unittest.TestCase):
+    def setUp(self):
+        self.processes = []
+        self.interfaces = []
+        # A namespace of its own keeps every test apart from the others.
+        self.namespace = "/" + self._testMethodName
+        self.output = tempfile.TemporaryFile(mode="w+")
+
+    def tearDown(self):
+        for interface in self.interfaces:
+            interface.unregister()
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        self.output.close()
+        if rospy.has_param(self.namespace):
+            rospy.delete_param(self.namespace)
+
+    def start(self, parameters):
+        if parameters:
+            rospy.set_param(self.namespace + "/simulator", parameters)
+        program = find_node("vibro_impact", "simulator")[0]
+        process = subprocess.Popen(
+            [program, "__ns:=" + self.namespace], stdout=self.output, stderr=subprocess.STDOUT)
+        self.processes.append(process)
+        return process
+
+    def printed(self):
+        self.output.seek(0)
+        return self.output.read()
+
+    def subscribe(self, topic, kind):
+        messages = []
+        subscriber = rospy.Subscriber(topic, kind, messages.append, queue_size=None)
+        self.interfaces.append(subscriber)
+        return messages, subscriber
+
+    def advertise(self):
+        publisher = rospy.Publisher(self.namespace + "/base_excitation", BaseExcitation, queue_size=100)
+        self.interfaces.append(publisher)
+        return publisher
+
+    def expect_failure(self, parameters, faults):
+        process = self.start(parameters)
+        self.assertEqual(process.wait(PATIENCE), 1)
+        printed = self.printed()
+        self.assertEqual(printed.count("FATAL"), 1, printed)
+        for fault in faults:
+            self.assertIn(fault, printed)
+
+    def test_all_faults_of_a_configuration_end_it_with_one_message(self):
+        parameters = configuration()
+        parameters["beam1"]["length"] = -0.5
+        parameters["beam2"]["density"] = "heavy"
+        del parameters["damping"]["free"]
+        parameters["contact"]["stifness"] = 1.0
+        parameters["basis"]["modes_free"] = 0
+        parameters["mirror_rate"] = -5.0
+        parameters["max_acceleration"] = "plenty"
+        parameters["mirorr_rate"] = 50.0
+        self.expect_failure(parameters, [
+            "beam1.length = -0.5", "beam2.density", "heavy", "damping.free", "stifness", "modes_free",
+            "mirror_rate = -5.0", "max_acceleration = \"plenty\"", "\"mirorr_rate\" is unknown"])
+
+    def test_missing_configuration_ends_it(self):
+        self.expect_failure({}, ["beam1 is missing", "beam2 is missing", "contact is missing", "damping is missing"])
+
+    def test_says_what_it_waits_for(self):
+        log, _ = self.subscribe("/rosout", Log)
+        self.start(configuration())
+        text = "still waiting for data on topic " + self.namespace + "/base_excitation"
+        self.assertTrue(wait_until(lambda: any(text in message.msg for message in log)))
+
+    def test_two_publishers_are_both_named(self):
+        parameters = configuration()
+        parameters["diagnostic_period"] = 0.1
+        parameters["max_input_age"] = 60.0
+        self.start(parameters)
+        publisher = self.advertise()
+        gaps, _ = self.subscribe(self.namespace + "/gap", Gap)
+        diagnostics, _ = self.subscribe("/diagnostics", DiagnosticArray)
+        sent = 0
+
+        def send():
+            nonlocal sent
+            publisher.publish(block(10 * sent, [0.0] * 10))
+            sent += 1
+
+        self.assertTrue(wait_until(lambda: publisher.get_num_connections() == 1))
+        send()
+        self.assertTrue(wait_until(lambda: gaps))
+        self.processes.append(subprocess.Popen([
+            "rostopic", "pub", "-r", "20", self.namespace + "/base_excitation", "vibro_impact/BaseExcitation",
+            "{header: {stamp: {secs: 1800000000}}, seq: 7, sample_period: 2.0e-5, acceleration: [0.0]}"]))
+
+        def complaints():
+            send()
+            return [status.message for message in diagnostics for status in message.status
+                    if status.level == DiagnosticStatus.ERROR and "two publishers" in status.message]
+
+        self.assertTrue(wait_until(complaints))
+        self.assertIn(self.namespace + "/base_excitation", complaints()[0])
+        self.assertIn(rospy.get_name(), complaints()[0])
+        self.assertIn("/rostopic_", complaints()[0])
+        self.assertTrue(all(gap.seq != 7 for gap in gaps), "a block of the second publisher was taken")
+
+    def expect_clean_end(self, number):
+        process = self.start(configuration())
+        publisher = self.advertise()
+        gaps, gap_subscriber = self.subscribe(self.namespace + "/gap", Gap)
+        impacts, impact_subscriber = self.subscribe(self.namespace + "/impact", Impact)
+        self.assertTrue(wait_until(
+            lambda: publisher.get_num_connections() == 1 and gap_subscriber.get_num_connections() == 1
+            and impact_subscriber.get_num_connections() == 1))
+        # An acceleration that grows to a steady one presses the structures together for good.
+        publisher.publish(block(0, [10.0 * (1.0 - math.exp(-0.01 * i)) for i in range(1000)]))
+        self.assertTrue(wait_until(lambda: gaps))
+        self.assertLess(gaps[0].gap[-1], 0.0)
+        process.send_signal(number)
+        self.assertEqual(process.wait(PATIENCE), 0, self.printed())
+        self.assertTrue(wait_until(lambda: any(impact.cut_short for impact in impacts)))
+
+    def test_interrupt_publishes_the_open_impact_and_ends_cleanly(self):
+        self.expect_clean_end(signal.SIGINT)
+
+    def test_termination_publishes_the_open_impact_and_ends_cleanly(self):
+        self.expect_clean_end(signal.SIGTERM)
+
+
+if __name__ == "__main__":
+    rospy.init_node("simulator_process_test")
+    rostest.rosrun("vibro_impact", "simulator_process_test", SimulatorProcessTest)

@@ -1,0 +1,166 @@
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "vibro_impact/config/error.h"
+#include "vibro_impact/ros/simulator_parameters.h"
+
+namespace core = vibro_impact::core;
+using vibro_impact::config::Error;
+using vibro_impact::graph::parseSimulatorParameters;
+using vibro_impact::graph::SimulatorParameters;
+using vibro_impact::graph::toYaml;
+using XmlRpc::XmlRpcValue;
+
+namespace
+{
+/// As the parameter server gives it: whole numbers become integers, `1.66e9` a text.
+XmlRpcValue goodTree()
+{
+  XmlRpcValue tree;
+  tree["beam1"]["youngs_modulus"] = "1.66e9";
+  tree["beam1"]["density"] = 954;
+  tree["beam1"]["length"] = 0.0529;
+  tree["beam1"]["height"] = 0.00127;
+  tree["beam1"]["width"] = 0.0127;
+  tree["beam1"]["contact_location"] = 0.02645;
+  tree["beam2"] = "rigid";
+  tree["contact"]["stiffness"] = 24309.426302924;
+  tree["contact"]["clearance"] = 0;
+  tree["damping"]["free"] = 0.01;
+  tree["damping"]["contact"] = 0.05;
+  tree["basis"]["type"] = "attachment";
+  tree["basis"]["modes_per_beam"] = 3;
+  return tree;
+}
+
+void expectFaults(const XmlRpcValue& tree, const std::vector<std::string>& parts)
+{
+  try
+  {
+    parseSimulatorParameters(tree, "/simulator");
+    ADD_FAILURE() << "nothing was thrown";
+  }
+  catch (const Error& error)
+  {
+    const std::string message = error.what();
+    for (const std::string& part : parts)
+    {
+      EXPECT_NE(message.find(part), std::string::npos) << '"' << message << "\" lacks \"" << part << '"';
+    }
+  }
+}
+
+TEST(SimulatorParameters, modelIsRead)
+{
+  const SimulatorParameters parameters = parseSimulatorParameters(goodTree(), "/simulator");
+  EXPECT_EQ(parameters.system.beam1.youngs_modulus, 1.66e9);
+  EXPECT_EQ(parameters.system.beam1.density, 954.0);
+  EXPECT_EQ(parameters.system.beam1.length, 0.0529);
+  EXPECT_EQ(parameters.system.contact.stiffness, 24309.426302924);
+  EXPECT_TRUE(std::holds_alternative<core::RigidSurface>(parameters.system.beam2));
+  EXPECT_EQ(std::get<core::AttachmentBasis>(parameters.system.basis).modes_per_beam, 3);
+}
+
+TEST(SimulatorParameters, ownParametersHaveDefaults)
+{
+  const SimulatorParameters parameters = parseSimulatorParameters(goodTree(), "/simulator");
+  EXPECT_EQ(parameters.limits.max_acceleration, 1.0e5);
+  EXPECT_EQ(parameters.limits.max_bridged_gap, 0.02);
+  EXPECT_EQ(parameters.limits.max_step_back, 0.1);
+  EXPECT_EQ(parameters.limits.max_stamp_jitter, 0.05);
+  EXPECT_EQ(parameters.mirror_rate, 50.0);
+  EXPECT_EQ(parameters.queue_size, 1000u);
+  EXPECT_EQ(parameters.max_input_age, 1.0);
+  EXPECT_EQ(parameters.diagnostic_period, 1.0);
+}
+
+TEST(SimulatorParameters, ownParametersAreRead)
+{
+  XmlRpcValue tree = goodTree();
+  tree["max_acceleration"] = 500;
+  tree["max_bridged_gap"] = 0;
+  tree["max_step_back"] = 0.25;
+  tree["max_stamp_jitter"] = "1e-2";
+  tree["mirror_rate"] = 25;
+  tree["queue_size"] = "0";
+  tree["max_input_age"] = 2.5;
+  tree["diagnostic_period"] = 0.1;
+  const SimulatorParameters parameters = parseSimulatorParameters(tree, "/simulator");
+  EXPECT_EQ(parameters.limits.max_acceleration, 500.0);
+  EXPECT_EQ(parameters.limits.max_bridged_gap, 0.0);
+  EXPECT_EQ(parameters.limits.max_step_back, 0.25);
+  EXPECT_EQ(parameters.limits.max_stamp_jitter, 0.01);
+  EXPECT_EQ(parameters.mirror_rate, 25.0);
+  EXPECT_EQ(parameters.queue_size, 0u);
+  EXPECT_EQ(parameters.max_input_age, 2.5);
+  EXPECT_EQ(parameters.diagnostic_period, 0.1);
+}
+
+TEST(SimulatorParameters, emptyTreeNamesWhatIsMissing)
+{
+  for (const XmlRpcValue& tree : {XmlRpcValue(), XmlRpcValue(3)})
+  {
+    expectFaults(tree, {"/simulator", "beam1", "beam2", "contact", "damping", "missing"});
+  }
+}
+
+TEST(SimulatorParameters, allFaultsComeInOneMessage)
+{
+  XmlRpcValue tree = goodTree();
+  tree["beam1"]["length"] = -1.0;
+  tree["beam1"]["widht"] = 0.1;
+  tree["mirror_rate"] = 0;
+  tree["queue_size"] = -1;
+  tree["max_acceleration"] = "much";
+  tree["frequency"] = 50;
+  expectFaults(tree, {"mirror_rate = 0: must be a number in (0, 10000] Hz", "queue_size = -1: must be a whole number",
+                      "max_acceleration = \"much\": must be a number in", "\"frequency\" is unknown: must be one of",
+                      "mirror_rate, queue_size", "beam1.length = -1.0", "widht"});
+}
+
+TEST(SimulatorParameters, everyOwnParameterIsChecked)
+{
+  for (const char* key : {"max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter", "mirror_rate",
+                          "queue_size", "max_input_age", "diagnostic_period"})
+  {
+    for (const XmlRpcValue& bad :
+         {XmlRpcValue(-1), XmlRpcValue(1.0e12), XmlRpcValue("nan"), XmlRpcValue(true), XmlRpcValue(std::string(""))})
+    {
+      XmlRpcValue tree = goodTree();
+      tree[key] = bad;
+      expectFaults(tree, {std::string("/simulator: ") + key + " = " + toYaml(bad) + ": must be "});
+    }
+  }
+  XmlRpcValue tree = goodTree();
+  tree["queue_size"] = 2.5;
+  expectFaults(tree, {"queue_size = 2.5: must be a whole number in [0, 1000000]"});
+  tree["queue_size"] = "2.5";
+  expectFaults(tree, {"queue_size = \"2.5\": must be a whole number in [0, 1000000]"});
+}
+
+TEST(SimulatorParameters, numbersOfTheModelKeepTheirType)
+{
+  XmlRpcValue tree = goodTree();
+  tree["basis"]["modes_per_beam"] = 3.0;
+  expectFaults(tree, {"modes_per_beam"});
+}
+
+TEST(ParameterTreeAsYaml, everyTypeIsWritten)
+{
+  XmlRpcValue tree;
+  tree["b"] = true;
+  tree["d"] = 0.1;
+  tree["e"] = 1.0e300;
+  tree["i"] = -3;
+  tree["l"][0] = 1;
+  tree["l"][1] = 2.0;
+  tree["s"] = std::string("a \"word\"\n\\");
+  EXPECT_EQ(toYaml(tree), R"({"b": true, "d": 0.1, "e": 1e+300, "i": -3, "l": [1, 2.0], "s": "a \"word\"\x0a\\"})");
+  EXPECT_EQ(toYaml(XmlRpcValue()), "null");
+}
+
+}  // namespace
