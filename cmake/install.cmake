@@ -2,3 +2,7 @@
 
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION} FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY config launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+
+# The scripts for use; those that build and test the repository stay in it.
+catkin_install_python(PROGRAMS scripts/landmarks scripts/plot_frf DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(FILES scripts/frequency_response.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -145,6 +145,7 @@ void OutputDirectory::write(const std::vector<OutputFile>& files) const
 {
   const SignalGuard guard;
   std::vector<std::unique_ptr<TemporaryFile>> complete;
+  complete.reserve(files.size());
   for (const OutputFile& file : files)
   {
     complete.push_back(std::make_unique<TemporaryFile>(path_, file.name, file.text));

@@ -195,6 +195,7 @@ std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row
 OutputFile responseTable(const std::vector<core::Response>& responses)
 {
   std::vector<ResponseRow> rows;
+  rows.reserve(responses.size());
   for (const core::Response& response : responses)
   {
     rows.push_back(response.row);

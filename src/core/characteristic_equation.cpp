@@ -67,7 +67,7 @@ CharacteristicEquation::Root CharacteristicEquation::root(Eigen::Index index) co
   // With the nearest pole as origin, f = 0 reads  distance = weight/remainder(distance),  and the remainder rises with
   // x. So its value at the far end of the search bounds the distance from below, away from zero.
   Root root;
-  double far_end;  // of |distance|
+  double far_end = 0.0;  // of |distance|
   double sign = 1.0;
   if (index + 1 < poles_.size())
   {

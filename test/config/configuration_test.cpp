@@ -17,7 +17,6 @@ namespace vibro_impact::config
 namespace
 {
 using testing::HasSubstr;
-using testing::Not;
 
 const std::string beam = R"(
   youngs_modulus: 1.66e+9

@@ -35,7 +35,7 @@ public:
   /// Writes a file; returns its path.
   std::string file(const std::string& name, const std::string& text) const
   {
-    const std::string path = path_ + "/" + name;
+    std::string path = path_ + "/" + name;
     std::ofstream(path) << text;
     return path;
   }

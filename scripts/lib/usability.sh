@@ -1,0 +1,43 @@
+# shellcheck shell=bash
+# Whether a user of a setup file finds everything the package offers, and it runs. Needs common.sh.
+
+# check_usability SETUP_FILE: prints what it does; fails at the first thing that does not work.
+check_usability()
+{
+  : "${root:?source common.sh first}"
+  local setup="$1" message launch_file program master
+  clean_ros_environment
+  source_setup "${setup}"
+  cd "${TMPDIR:-/tmp}" || return
+
+  for message in "${root}"/msg/*.msg; do
+    message="vibro_impact/$(basename "${message}" .msg)"
+    echo "rosmsg show ${message}"
+    rosmsg show "${message}"
+  done
+  echo "import of the messages from Python"
+  /usr/bin/python3 -c 'import vibro_impact.msg; vibro_impact.msg.Impact()'
+
+  for launch_file in "${root}"/launch/*.launch; do
+    launch_file="$(basename "${launch_file}")"
+    echo "roslaunch --ros-args vibro_impact ${launch_file}"
+    roslaunch --ros-args vibro_impact "${launch_file}"
+  done
+  for program in extract_frf frf_sweep landmarks plot_frf; do
+    echo "rosrun vibro_impact ${program} --help"
+    rosrun vibro_impact "${program}" --help
+  done
+
+  # A master of its own, which roslaunch starts and ends.
+  ROS_MASTER_URI="http://localhost:$(free_port)"
+  export ROS_MASTER_URI
+  echo "roslaunch vibro_impact simulator.launch; rostopic echo /model_info; rosrun vibro_impact shaker"
+  roslaunch vibro_impact simulator.launch &
+  master=$!
+  # shellcheck disable=SC2064
+  trap "kill -INT ${master} 2>/dev/null; wait ${master}" EXIT
+  timeout 60 rostopic echo -n 1 /model_info
+  for program in simulator shaker; do
+    rosrun --prefix 'test -x' vibro_impact "${program}"
+  done
+}
