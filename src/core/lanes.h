@@ -42,9 +42,10 @@ inline double sum(Packet packet)
   return packet[0] + packet[1];
 }
 
-/// z *= f, elementwise and complex, in place; real and imaginary parts apart.
-inline void multiply(double* __restrict re, double* __restrict im, const double* __restrict factor_re,
-                     const double* __restrict factor_im, Eigen::Index size)
+/// z += z f, elementwise and complex, in place; real and imaginary parts apart. For the small steps that make up most
+/// of a motion f is small, and the rounding of the factor 1 + f, which would add up, does not arise.
+inline void growBy(double* __restrict re, double* __restrict im, const double* __restrict factor_re,
+                   const double* __restrict factor_im, Eigen::Index size)
 {
   for (Eigen::Index n = 0; n < size; n += packet_size)
   {
@@ -52,8 +53,8 @@ inline void multiply(double* __restrict re, double* __restrict im, const double*
     const Packet y = load(im + n);
     const Packet f = load(factor_re + n);
     const Packet g = load(factor_im + n);
-    store(re + n, x * f - y * g);
-    store(im + n, x * g + y * f);
+    store(re + n, x + (x * f - y * g));
+    store(im + n, y + (x * g + y * f));
   }
 }
 
@@ -79,12 +80,12 @@ inline double dot(const double* __restrict x, const double* __restrict y, Eigen:
   return sum(even + odd);
 }
 
-/// z = (z + change kick) f, and of the new z the two linear forms `first` and `second`, all in one pass; every array
-/// but the factors is [real parts; imaginary parts] with `half` of each.
-inline void kickMultiplyEvaluate(double* __restrict z, double change, const double* __restrict kick,
-                                 const double* __restrict factor_re, const double* __restrict factor_im,
-                                 const double* __restrict first, const double* __restrict second, Eigen::Index half,
-                                 double& first_value, double& second_value)
+/// z = (z + change kick)(1 + f), and of the new z the two linear forms `first` and `second`, all in one pass; every
+/// array but the factors is [real parts; imaginary parts] with `half` of each.
+inline void kickGrowEvaluate(double* __restrict z, double change, const double* __restrict kick,
+                             const double* __restrict factor_re, const double* __restrict factor_im,
+                             const double* __restrict first, const double* __restrict second, Eigen::Index half,
+                             double& first_value, double& second_value)
 {
   const Packet scale = broadcast(change);
   Packet first_re{};
@@ -98,8 +99,8 @@ inline void kickMultiplyEvaluate(double* __restrict z, double change, const doub
     const Packet y = load(z + m) + scale * load(kick + m);
     const Packet f = load(factor_re + n);
     const Packet g = load(factor_im + n);
-    const Packet re = x * f - y * g;
-    const Packet im = x * g + y * f;
+    const Packet re = x + (x * f - y * g);
+    const Packet im = y + (x * g + y * f);
     store(z + n, re);
     store(z + m, im);
     first_re += load(first + n) * re;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -172,8 +174,8 @@ struct ContactMode
 };
 
 /// Sorts, cuts to the lowest `count`, and splits into the linear state and the mapping.
-void assembleContactState(std::vector<ContactMode> modes, std::size_t count, const SystemParameters& parameters,
-                          LinearState& state, Eigen::MatrixXd& mapping)
+void assembleContactState(std::vector<ContactMode> modes, std::size_t count, const ContactParameters& spring,
+                          double damping_ratio, LinearState& state, Eigen::MatrixXd& mapping)
 {
   std::stable_sort(modes.begin(), modes.end(),
                    [](const ContactMode& a, const ContactMode& b) { return a.mode.frequency < b.mode.frequency; });
@@ -185,8 +187,8 @@ void assembleContactState(std::vector<ContactMode> modes, std::size_t count, con
     coordinates.push_back(modes[n].mode);
     mapping.col(static_cast<Eigen::Index>(n)) = modes[n].shape;
   }
-  state = makeState(coordinates, parameters.damping.contact);
-  state.preload = -parameters.contact.stiffness * parameters.contact.clearance * state.contact_deflection;
+  state = makeState(coordinates, damping_ratio);
+  state.preload = -spring.stiffness * spring.clearance * state.contact_deflection;
 }
 
 /// Where in `coordinates` those are that move the gap; the others keep frequency and shape in both states.
@@ -386,26 +388,25 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
 }
 }  // namespace
 
-SwitchedModel::SwitchedModel(const SystemParameters& parameters) : parameters_(parameters)
+SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(parameters.contact)
 {
-  validate(parameters_);
-  scales_ = referenceScales(parameters_.beam1);
-  const std::vector<SignedStructure> structures = makeStructures(parameters_);
-  const double stiffness = parameters_.contact.stiffness;
+  validate(parameters);
+  scales_ = referenceScales(parameters.beam1);
+  const std::vector<SignedStructure> structures = makeStructures(parameters);
 
-  if (const auto* conjoined = std::get_if<ConjoinedBasis>(&parameters_.basis))
+  if (const auto* conjoined = std::get_if<ConjoinedBasis>(&parameters.basis))
   {
     const auto rows = static_cast<std::size_t>(conjoined->modes_free);
     const auto columns = static_cast<std::size_t>(conjoined->modes_contact);
     Coordinates coordinates;
-    std::vector<ContactMode> modes = conjoinedModes(structures, columns, rows, stiffness, coordinates);
+    std::vector<ContactMode> modes = conjoinedModes(structures, columns, rows, spring_.stiffness, coordinates);
     coordinates.resize(rows);
-    free_ = makeState(coordinates, parameters_.damping.free);
-    assembleContactState(std::move(modes), columns, parameters_, contact_, mapping_);
+    free_ = makeState(coordinates, parameters.damping.free);
+    assembleContactState(std::move(modes), columns, spring_, parameters.damping.contact, contact_, mapping_);
   }
   else
   {
-    const int modes_per_beam = std::get<AttachmentBasis>(parameters_.basis).modes_per_beam;
+    const int modes_per_beam = std::get<AttachmentBasis>(parameters.basis).modes_per_beam;
     Coordinates coordinates;
     for (const SignedStructure& side : structures)
     {
@@ -415,10 +416,55 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : parameters_(p
       }
       coordinates.push_back(attachmentShape(side, modes_per_beam));
     }
-    separateEqualFrequencies(coordinates);
-    free_ = makeState(coordinates, parameters_.damping.free);
-    assembleContactState(ritzModes(coordinates, stiffness), coordinates.size(), parameters_, contact_, mapping_);
+    buildFromSpace(std::move(coordinates), parameters.damping);
   }
+}
+
+SwitchedModel::SwitchedModel(const std::vector<Mode>& modes, const ContactParameters& contact,
+                             const DampingParameters& damping)
+    : spring_(contact)
+{
+  const auto refuse = [](const std::string& name, double value, const std::string& allowed)
+  { throw std::invalid_argument(name + ": " + std::to_string(value) + "; allowed: " + allowed); };
+  if (modes.empty())
+  {
+    throw std::invalid_argument("modes: none; allowed: at least one");
+  }
+  for (const Mode& mode : modes)
+  {
+    if (!std::isfinite(mode.frequency) || mode.frequency <= 0.0)
+    {
+      refuse("frequency of a mode", mode.frequency, "finite and > 0, rad/s");
+    }
+    if (!std::isfinite(mode.contact_deflection) || !std::isfinite(mode.participation))
+    {
+      refuse("contact deflection or participation of the mode at (rad/s)", mode.frequency, "finite");
+    }
+  }
+  if (!std::isfinite(contact.stiffness) || contact.stiffness <= 0.0)
+  {
+    refuse("contact stiffness", contact.stiffness, "finite and > 0, N/m");
+  }
+  if (!std::isfinite(contact.clearance))
+  {
+    refuse("clearance", contact.clearance, "finite, m");
+  }
+  for (const double ratio : {damping.free, damping.contact})
+  {
+    if (!(ratio >= 0.0 && ratio < 1.0))
+    {
+      refuse("damping ratio", ratio, "from 0 to below 1");
+    }
+  }
+  buildFromSpace(modes, damping);
+}
+
+void SwitchedModel::buildFromSpace(std::vector<Mode> coordinates, const DampingParameters& damping)
+{
+  separateEqualFrequencies(coordinates);
+  free_ = makeState(coordinates, damping.free);
+  assembleContactState(ritzModes(coordinates, spring_.stiffness), coordinates.size(), spring_, damping.contact,
+                       contact_, mapping_);
 }
 
 Eigen::ArrayXd SwitchedModel::mappingLoss() const

@@ -20,6 +20,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Derivatives of the gap below this share of the terms they are summed from are rounding, and taken for zero.
 constexpr double derivative_rounding = 1.0e-9;
 
+/// The most ticks that are made at a root to get past the gap's rounding error: 1e-9 of the shortest period.
+constexpr double most_ticks_through = 1024.0;
+
 /// Keeps the three highest bits: a step shortened by less than a fifth that costs three products a mode at the most.
 std::int64_t threeHighestBits(std::int64_t ticks)
 {
@@ -143,8 +146,8 @@ void SwitchedMotion::setInterval(double length)
     const LinearState& linear = linearState(state);
     highest = std::max(highest, (linear.contact_deflection != 0.0).select(linear.frequency, 0.0).maxCoeff());
   }
-  const double tolerance = std::max(1.0e-12, highest > 0.0 ? 1.0e-9 * two_pi / highest : 0.0);
-  doublings_ = std::clamp(static_cast<int>(std::ceil(std::log2(length / tolerance))), 10, 60);
+  const double shortest_period = highest > 0.0 ? two_pi / highest : length;
+  doublings_ = std::clamp(static_cast<int>(std::ceil(std::log2(length / (1.0e-12 * shortest_period)))), 10, 60);
   tick_ = std::ldexp(length, -doublings_);
   switch_limit_ = switch_allowance + static_cast<std::int64_t>(std::min(1.0e9, 2.0 * length * highest / two_pi));
 
@@ -160,10 +163,11 @@ void SwitchedMotion::setInterval(double length)
       const double time = std::ldexp(tick_, k);
       for (Eigen::Index n = 0; n < half; ++n)  // the modes, the phasor, the padding
       {
-        const double size = n < modes ? std::exp(-t.decay(n) * time) : 1.0;
+        const double shrinkage = n < modes ? std::expm1(-t.decay(n) * time) : 0.0;
         const double angle = (n < modes ? t.damped(n) : drive_frequency_) * time;
-        t.factor_re(n, k) = size * std::cos(angle);
-        t.factor_im(n, k) = size * std::sin(angle);
+        const double half_sine = std::sin(0.5 * angle);
+        t.factor_re(n, k) = shrinkage * std::cos(angle) - 2.0 * half_sine * half_sine;
+        t.factor_im(n, k) = (1.0 + shrinkage) * std::sin(angle);
       }
     }
   }
@@ -343,8 +347,8 @@ void SwitchedMotion::rotate(Eigen::VectorXd& exponentials, int k) const
 {
   const Tables& t = now();
   const Eigen::Index half = t.factor_re.rows();
-  multiply(exponentials.data(), exponentials.data() + half, t.factor_re.data() + k * half,
-           t.factor_im.data() + k * half, half);
+  growBy(exponentials.data(), exponentials.data() + half, t.factor_re.data() + k * half, t.factor_im.data() + k * half,
+         half);
 }
 
 void SwitchedMotion::rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const
@@ -475,9 +479,9 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
     const double gap_before = gap_;
     const double rate_before = rate_;
     const Eigen::Index half = t.factor_re.rows();
-    kickMultiplyEvaluate(v.exponentials.data(), slope_change, t.kick.data(), t.factor_re.data() + doublings_ * half,
-                         t.factor_im.data() + doublings_ * half, t.derivative.data() + 2 * half,
-                         t.derivative.data() + 4 * half, half, gap_, rate_);
+    kickGrowEvaluate(v.exponentials.data(), slope_change, t.kick.data(), t.factor_re.data() + doublings_ * half,
+                     t.factor_im.data() + doublings_ * half, t.derivative.data() + 2 * half,
+                     t.derivative.data() + 4 * half, half, gap_, rate_);
     time_ = length_;
     gap_ += lineGap(time_);
     rate_ += lineRate();
@@ -592,7 +596,7 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
     time = rate >= 0.0 ? length_ : -distance / rate;
   }
   const double ticks = time / tick_;
-  if (ticks < 64.0 && distance <= resolution_ && std::abs(rate) <= derivative_rounding * boundOfDerivative(1))
+  if (ticks < 65536.0 && distance <= resolution_ && std::abs(rate) <= derivative_rounding * boundOfDerivative(1))
   {
     return departureTicks(left);
   }
@@ -600,7 +604,14 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
   {
     return left;
   }
-  return std::max<std::int64_t>(1, threeHighestBits(static_cast<std::int64_t>(ticks)));
+  const std::int64_t safe = std::max<std::int64_t>(1, threeHighestBits(static_cast<std::int64_t>(ticks)));
+  if (distance <= resolution_ && rate < 0.0)
+  {
+    // At the root as far as the gap can be told from zero: on to where it can.
+    const double through = 1.5 * (distance + resolution_) / (-rate * tick_);
+    return std::clamp(static_cast<std::int64_t>(std::min(through, most_ticks_through)), safe, left);
+  }
+  return safe;
 }
 
 /// At gap zero with zero velocity the first derivative that is not zero decides: away from contact (no switch) or into
@@ -628,10 +639,10 @@ std::int64_t SwitchedMotion::departureTicks(std::int64_t left)
 
 void SwitchedMotion::switchState(double time, ImpactSink& sink)
 {
-  // The tick lies past the root by less than itself; in the conjoined basis a jump of the gap may have put it anywhere.
+  // The motion is past the root by a few ticks; in the conjoined basis a jump of the gap may have put it anywhere.
   const double overrun = gap_ / rate_;
-  const double late = overrun > 0.0 && overrun <= tick_ ? overrun : 0.0;
-  const double speed = std::abs(rate_);
+  const double late = overrun > 0.0 && overrun <= most_ticks_through * tick_ ? overrun : 0.0;
+  const double speed = std::abs(rate_ - late * now().derivative.col(3).dot(vectors().exponentials));
   if (state_ == 1)
   {
     endPiece();

@@ -21,18 +21,20 @@ namespace vibro_impact::core
 ///   Omega^2 + 2 i zeta_n omega_n Omega)
 ///
 /// so that the gap is a straight line and a sum of exponentials,  g = p(t) + Re sum_n w_n z_n,  with the drive's phasor
-/// D as one more exponential. Time inside an interval is counted in ticks, 2^-K of the interval, and z is advanced by
-/// factors exp(lambda tick 2^k) tabulated once: no transcendental function is evaluated between the switches, nor at
-/// them.
+/// D as one more exponential. Time inside an interval is counted in ticks, 2^-K of the interval and at most 1e-12 of
+/// the shortest period, and z is advanced by factors exp(lambda tick 2^k) tabulated once: no transcendental function is
+/// evaluated between the switches, nor at them.
 ///
 /// A switch is found by steps that cannot skip one. If B bounds |g''|, a gap g > 0 with the rate g' cannot reach zero
 /// before
 ///
 ///   s = (g' + sqrt(g'^2 + 2 g B))/B,        B = sum_n |w_n| |lambda_n|^2 |z_n|  (amplitudes only decay)
 ///
-/// and near a root s converges on it as Newton's method does, from this side. The motion lands on the first tick past
-/// the root. As both states agree at gap zero, the tick's lateness enters the motion in second order only; the reported
-/// time is corrected.
+/// and near a root s converges on it as Newton's method does, from this side. The motion lands on a tick
+/// just past the root, as soon as the gap can be told from zero (resolution_, its rounding error); the reported time
+/// and speed are those of the root. Exactly zero gap with zero velocity is no switch: there the first derivative that
+/// is not zero decides, and the motion is taken as far from the root as that derivative and a bound of the next one
+/// allow.
 class SwitchedMotion
 {
 public:
@@ -139,7 +141,7 @@ private:
     Eigen::MatrixXd derivative;
     Eigen::MatrixXd magnitude;                    // column j: |w| |lambda|^j
     Eigen::VectorXd momentum, momentum_integral;  // the same of Re sum Gamma z
-    Eigen::ArrayXXd factor_re, factor_im;         // column k: exp(lambda tick 2^k)
+    Eigen::ArrayXXd factor_re, factor_im;         // column k: exp(lambda tick 2^k) - 1
   };
 
   /// What moves, in the sizes of one state.

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <memory>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "vibro_impact/core/parameters.h"
+#include "vibro_impact/core/structure.h"
 
 namespace vibro_impact::core
 {
@@ -32,10 +33,12 @@ public:
   /// Builds the model. Throws std::invalid_argument as validate() does.
   explicit SwitchedModel(const SystemParameters& parameters);
 
-  const SystemParameters& parameters() const
-  {
-    return parameters_;
-  }
+  /// A model whose motion is made of the given modes alone, those of both structures in one list: contact_deflection is
+  /// the gap per unit coordinate (+phi of structure 1, -phi of structure 2). S1 has the Ritz modes of the same space;
+  /// nothing is lost in the mapping. The scales are all 1. Throws std::invalid_argument where there is no mode, a
+  /// frequency is not positive, a number not finite, the stiffness not positive or a damping ratio outside [0, 1).
+  SwitchedModel(const std::vector<Mode>& modes, const ContactParameters& contact, const DampingParameters& damping);
+
   const ReferenceScales& scales() const
   {
     return scales_;
@@ -65,15 +68,17 @@ public:
 
   double stiffness() const
   {
-    return parameters_.contact.stiffness;
+    return spring_.stiffness;
   }
   double clearance() const
   {
-    return parameters_.contact.clearance;
+    return spring_.clearance;
   }
 
 private:
-  SystemParameters parameters_;
+  void buildFromSpace(std::vector<Mode> coordinates, const DampingParameters& damping);
+
+  ContactParameters spring_;
   ReferenceScales scales_;
   LinearState free_;
   LinearState contact_;
