@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
+#include "parameter_faults.h"
 #include "vibro_impact/core/quotient.h"
 
 namespace vibro_impact::core
@@ -268,15 +268,6 @@ private:
   double soft_start_cycles_;
 };
 
-std::string text(double value)
-{
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream.precision(std::numeric_limits<double>::digits10);
-  stream << value;
-  return stream.str();
-}
-
 class FaultFinder
 {
 public:
@@ -439,15 +430,7 @@ std::vector<double> stepFrequencies(const SteppedSineParameters& parameters)
 
 std::unique_ptr<const DriveSignal> makeDriveSignal(const DriveParameters& parameters, double sample_rate)
 {
-  std::string message;
-  for (const ParameterFault& fault : findFaults(parameters, sample_rate))
-  {
-    message += (message.empty() ? "" : "; ") + fault.key + " = " + fault.value + ": must be " + fault.allowed;
-  }
-  if (!message.empty())
-  {
-    throw std::invalid_argument(message);
-  }
+  throwIfAny(findFaults(parameters, sample_rate));
   if (const auto* swept = std::get_if<SweptSineParameters>(&parameters))
   {
     Position end;
