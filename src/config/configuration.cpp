@@ -7,7 +7,6 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -18,6 +17,7 @@
 
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/config/number.h"
+#include "vibro_impact/config/spelling.h"
 
 namespace vibro_impact::config
 {
@@ -71,53 +71,6 @@ std::string quoted(const std::string& text)
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
   return '"' + shown + (text.size() > longest ? "..." : "") + '"';
-}
-
-// The least number of inserted, deleted, replaced or swapped neighbouring characters that turns `a` into `b`.
-std::size_t editDistance(const std::string& a, const std::string& b)
-{
-  std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  std::iota(distance[0].begin(), distance[0].end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i)
-  {
-    distance[i][0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j)
-    {
-      const std::size_t replaced = distance[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      distance[i][j] = std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, replaced});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-      {
-        distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return distance[a.size()][b.size()];
-}
-
-std::string lowerCase(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return text;
-}
-
-// The key that a misspelt one was meant to be: at most a third of it is wrong.
-std::optional<std::string> nearest(const std::string& misspelt, const Keys& keys)
-{
-  constexpr std::size_t longest = 60;
-  if (misspelt.size() > longest)
-  {
-    return std::nullopt;
-  }
-  const auto distance = [&misspelt](const std::string& key) { return editDistance(lowerCase(misspelt), key); };
-  const auto best =
-      std::min_element(keys.begin(), keys.end(),
-                       [&distance](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
-  if (best == keys.end() || 3 * distance(*best) > best->size())
-  {
-    return std::nullopt;
-  }
-  return *best;
 }
 
 // How a node that is not what it must be stands in the text.
@@ -372,18 +325,9 @@ core::SystemParameters parse(const std::string& yaml, const std::string& name)
   }
   const Reader reader(nodes[0]);
   const std::vector<std::string>& faults = reader.faults();
-  if (faults.size() == 1)
-  {
-    throw Error(name + ": " + faults[0]);
-  }
   if (!faults.empty())
   {
-    std::string message = name + ": " + std::to_string(faults.size()) + " faults";
-    for (const std::string& fault : faults)
-    {
-      message += "\n  " + fault;
-    }
-    throw Error(message);
+    throw Error(name, faults);
   }
   return reader.parameters();
 }

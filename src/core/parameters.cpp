@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <locale>
-#include <sstream>
-#include <stdexcept>
+#include <utility>
+
+#include "parameter_faults.h"
 
 namespace vibro_impact::core
 {
@@ -24,15 +23,6 @@ constexpr double contact_ratio_max = 1.0e+10;
 
 // Nearer to a support, in lengths of the beam, the contact point moves by no more than rounding.
 constexpr double end_margin = 1.0e-6;
-
-std::string text(double value, int digits = std::numeric_limits<double>::digits10)
-{
-  std::ostringstream stream;
-  stream.imbue(std::locale::classic());
-  stream.precision(digits);
-  stream << value;
-  return stream.str();
-}
 
 double bendingStiffness(const BeamParameters& beam)
 {
@@ -188,15 +178,7 @@ std::vector<ParameterFault> findFaults(const SystemParameters& parameters)
 
 void validate(const SystemParameters& parameters)
 {
-  std::string message;
-  for (const ParameterFault& fault : findFaults(parameters))
-  {
-    message += (message.empty() ? "" : "; ") + fault.key + " = " + fault.value + ": must be " + fault.allowed;
-  }
-  if (!message.empty())
-  {
-    throw std::invalid_argument(message);
-  }
+  throwIfAny(findFaults(parameters));
 }
 
 ReferenceScales referenceScales(const BeamParameters& beam1)

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+#include "vibro_impact/core/parameters.h"
+
+namespace vibro_impact::core
+{
+/// A sine of constant frequency and amplitude.
+struct SineParameters
+{
+  double acceleration = 0.0;         ///< amplitude, m/s^2, >= 0
+  double reference_frequency = 1.0;  ///< what the frequency is given in, Hz, > 0
+  double frequency = 0.0;            ///< times reference_frequency, > 0
+  double cycles = 0.0;               ///< > 0
+  double soft_start_cycles = 0.0;    ///< cosine ramp of the amplitude over the first cycles, from 0 to `cycles`
+};
+
+/// Steps of constant frequency, each of the same whole number of cycles, from a start frequency up or down to a stop
+/// frequency.
+struct SteppedSineParameters
+{
+  double acceleration = 0.0;         ///< amplitude of every step, m/s^2, >= 0
+  double reference_frequency = 1.0;  ///< what the frequencies are given in, Hz, > 0
+  double start_frequency = 0.0;      ///< times reference_frequency, > 0
+  double stop_frequency = 0.0;       ///< the same; the last step is the last one that does not lie beyond it
+  double frequency_step = 0.0;       ///< the same, > 0 also for steps downwards
+  std::int64_t cycles_per_step = 0;  ///< >= 1
+  double soft_start_cycles =
+      0.0;            ///< cosine ramp over the first cycles and after every rest, from 0 to `cycles_per_step`
+  double rest = 0.0;  ///< without drive between two steps, s, >= 0
+};
+
+enum class SweepLaw
+{
+  linear,      ///< constant rate in Hz/s
+  logarithmic  ///< constant rate in octaves per minute
+};
+
+/// A sine whose frequency glides from start to stop, up or down.
+struct SweptSineParameters
+{
+  SweepLaw law = SweepLaw::linear;
+  double acceleration = 0.0;         ///< amplitude, m/s^2, >= 0
+  double reference_frequency = 1.0;  ///< what the frequencies are given in, Hz, > 0
+  double start_frequency = 0.0;      ///< times reference_frequency, > 0
+  double stop_frequency = 0.0;       ///< the same, not the start frequency
+  double duration = 0.0;             ///< s, > 0
+  double soft_start_cycles = 0.0;    ///< cosine ramp over the first cycles, >= 0
+};
+
+using DriveParameters = std::variant<SineParameters, SteppedSineParameters, SweptSineParameters>;
+
+/// Every value that is out of range for a signal of `sample_rate` (Hz), with the members' names as keys. All
+/// frequencies must lie below half the sample rate. Empty if a signal can be made.
+std::vector<ParameterFault> findFaults(const DriveParameters& parameters, double sample_rate);
+
+/// A base acceleration of finite length: a sine that starts at zero, rising, with continuous phase from its first
+/// sample to its last (except that it stands still at phase zero during a rest), sampled at constant rate. Immutable.
+///
+/// Any sample is had at any time, from a closed form: the samples do not depend on how they are asked for. The phase of
+/// constant frequencies is exact to 1e-12 cycles after any number of them, that of a sweep to a few 1e-16 of its
+/// cycles. A step lasts its whole number of cycles exactly, wherever its end falls between two samples.
+class DriveSignal
+{
+public:
+  virtual ~DriveSignal() = default;
+
+  /// Samples per second.
+  double sampleRate() const
+  {
+    return sample_rate_;
+  }
+
+  /// Number of samples: those at times from zero up to, but without, the end of the signal.
+  std::uint64_t samples() const
+  {
+    return samples_;
+  }
+
+  /// Writes the acceleration (m/s^2) of `count` samples from `first` on. Throws std::out_of_range beyond the last
+  /// sample.
+  void generate(std::uint64_t first, std::size_t count, double* acceleration) const;
+
+  /// Instantaneous frequency at a sample, Hz; 0 during a rest and beyond the end.
+  virtual double frequency(std::uint64_t sample) const = 0;
+
+protected:
+  DriveSignal(double sample_rate, std::uint64_t samples) : sample_rate_(sample_rate), samples_(samples)
+  {
+  }
+
+private:
+  virtual void fill(std::uint64_t first, std::size_t count, double* acceleration) const = 0;
+
+  double sample_rate_;
+  std::uint64_t samples_;
+};
+
+/// Throws std::invalid_argument if findFaults() finds any; the message names each parameter, its value and what is
+/// allowed.
+std::unique_ptr<const DriveSignal> makeDriveSignal(const DriveParameters& parameters, double sample_rate);
+
+/// The frequencies of the steps in their order, Hz.
+std::vector<double> stepFrequencies(const SteppedSineParameters& parameters);
+
+}  // namespace vibro_impact::core

@@ -1,0 +1,58 @@
+#include "vibro_impact/config/spelling.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vibro_impact::config
+{
+namespace
+{
+// The least number of inserted, deleted, replaced or swapped neighbouring characters that turns `a` into `b`.
+std::size_t editDistance(const std::string& a, const std::string& b)
+{
+  std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  std::iota(distance[0].begin(), distance[0].end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i)
+  {
+    distance[i][0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j)
+    {
+      const std::size_t replaced = distance[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      distance[i][j] = std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, replaced});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+      {
+        distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return distance[a.size()][b.size()];
+}
+
+std::string lowerCase(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return text;
+}
+
+}  // namespace
+
+std::optional<std::string> nearest(const std::string& misspelt, const std::vector<std::string>& words)
+{
+  constexpr std::size_t longest = 60;
+  if (misspelt.size() > longest)
+  {
+    return std::nullopt;
+  }
+  const auto distance = [&misspelt](const std::string& word) { return editDistance(lowerCase(misspelt), word); };
+  const auto best =
+      std::min_element(words.begin(), words.end(),
+                       [&distance](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
+  if (best == words.end() || 3 * distance(*best) > best->size())
+  {
+    return std::nullopt;
+  }
+  return *best;
+}
+
+}  // namespace vibro_impact::config

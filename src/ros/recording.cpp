@@ -1,0 +1,201 @@
+#include "vibro_impact/ros/recording.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <ros/master.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+#include <xmlrpcpp/XmlRpcException.h>
+
+#include "vibro_impact/ros/process.h"
+
+namespace vibro_impact::graph
+{
+namespace
+{
+using XmlRpc::XmlRpcValue;
+
+bool isOfThisMachine(const std::string& host)
+{
+  return host == "localhost" || host == "127.0.0.1" || host == ros::network::getHost();
+}
+
+XmlRpcValue emptyList()
+{
+  XmlRpcValue list;
+  list.setSize(0);
+  return list;
+}
+
+// Counters travel as 32-bit integers that wrap around.
+std::uint64_t count(XmlRpcValue& value)
+{
+  return static_cast<std::uint32_t>(static_cast<int&>(value));
+}
+
+// The entries of one topic in one direction's statistics [[topic, [entry, ...]], ...], each of which begins with the
+// number of its connection.
+std::vector<XmlRpcValue> connections(XmlRpcValue& statistics, const std::string& topic)
+{
+  std::vector<XmlRpcValue> entries;
+  for (int i = 0; i < statistics.size(); ++i)
+  {
+    if (static_cast<std::string&>(statistics[i][0]) == topic)
+    {
+      XmlRpcValue& list = statistics[i][1];
+      for (int j = 0; j < list.size(); ++j)
+      {
+        entries.push_back(list[j]);
+      }
+    }
+  }
+  return entries;
+}
+
+// Adds what a publisher says: bus_info [[connection, destination, direction, transport, topic, ...], ...], and of each
+// connection the statistics [connection, bytes, bytes of data, messages, ...].
+void addSent(XmlRpcValue& bus_info, XmlRpcValue& bus_statistics, const std::string& subscriber, Delivery& delivery)
+{
+  for (int i = 0; i < bus_info.size(); ++i)
+  {
+    XmlRpcValue& connection = bus_info[i];
+    if (static_cast<std::string&>(connection[1]) != subscriber || static_cast<std::string&>(connection[2]) != "o" ||
+        static_cast<std::string&>(connection[4]) != delivery.topic)
+    {
+      continue;
+    }
+    for (XmlRpcValue& entry : connections(bus_statistics[0], delivery.topic))
+    {
+      if (static_cast<int&>(entry[0]) == static_cast<int&>(connection[0]))
+      {
+        ++delivery.connected;
+        delivery.sent += count(entry[3]);
+      }
+    }
+  }
+}
+
+// Adds what the subscriber says: of each connection the statistics [connection, bytes, messages, drops, ...].
+void addReceived(XmlRpcValue& bus_statistics, Delivery& delivery)
+{
+  for (XmlRpcValue& entry : connections(bus_statistics[1], delivery.topic))
+  {
+    delivery.received += count(entry[2]);
+    delivery.dropped += count(entry[3]);
+  }
+}
+
+}  // namespace
+
+Recording::Recording(std::vector<std::string> topics, std::string recorder)
+    : topics_(std::move(topics)), recorder_(std::move(recorder))
+{
+}
+
+void Recording::discover()
+{
+  publishers_.clear();
+  clients_.clear();
+  process_ = 0;
+  XmlRpcValue caller;
+  caller[0] = ros::this_node::getName();
+  XmlRpcValue response;
+  XmlRpcValue state;
+  if (!ros::master::execute("getSystemState", caller, response, state, false))
+  {
+    return;
+  }
+  XmlRpcValue& published = state[0];  // [[topic, [publisher, ...]], ...]
+  for (int i = 0; i < published.size(); ++i)
+  {
+    const auto topic = std::find(topics_.begin(), topics_.end(), static_cast<std::string&>(published[i][0]));
+    for (int j = 0; topic != topics_.end() && j < published[i][1].size(); ++j)
+    {
+      const std::string& publisher = static_cast<std::string&>(published[i][1][j]);
+      publishers_[publisher].push_back(static_cast<std::size_t>(topic - topics_.begin()));
+    }
+  }
+  XmlRpcValue process = request(recorder_, "getPid");
+  if (process.getType() == XmlRpcValue::TypeInt && isOfThisMachine(clients_[recorder_]->getHost()))
+  {
+    process_ = static_cast<int&>(process);
+  }
+}
+
+bool Recording::isIdle() const
+{
+  return process_ == 0 || isAsleep(process_);
+}
+
+std::vector<Delivery> Recording::ask()
+{
+  std::vector<Delivery> deliveries;
+  for (const std::string& topic : topics_)
+  {
+    deliveries.emplace_back().topic = topic;
+  }
+  try
+  {
+    for (const auto& [publisher, topics] : publishers_)
+    {
+      XmlRpcValue info = request(publisher, "getBusInfo");
+      XmlRpcValue statistics = info.size() > 0 ? request(publisher, "getBusStats") : emptyList();
+      for (const std::size_t topic : topics)
+      {
+        ++deliveries[topic].publishers;
+        if (statistics.size() > 0)
+        {
+          addSent(info, statistics, recorder_, deliveries[topic]);
+        }
+      }
+    }
+    XmlRpcValue statistics = publishers_.empty() ? emptyList() : request(recorder_, "getBusStats");
+    for (Delivery& delivery : deliveries)
+    {
+      if (statistics.size() > 1)
+      {
+        addReceived(statistics, delivery);
+      }
+    }
+  }
+  catch (const XmlRpc::XmlRpcException&)
+  {
+    // An answer in another form than roscpp's tells nothing: the deliveries stay incomplete.
+  }
+  return deliveries;
+}
+
+XmlRpcValue Recording::request(const std::string& node, const char* method)
+{
+  XmlRpcValue parameters;
+  parameters[0] = ros::this_node::getName();
+  std::unique_ptr<XmlRpc::XmlRpcClient>& client = clients_[node];
+  if (!client)
+  {
+    XmlRpcValue look_up;
+    look_up[0] = ros::this_node::getName();
+    look_up[1] = node;
+    XmlRpcValue response;
+    XmlRpcValue uri;
+    std::string host;
+    std::uint32_t port = 0;
+    if (!ros::master::execute("lookupNode", look_up, response, uri, false) ||
+        !ros::network::splitURI(static_cast<std::string&>(uri), host, port))
+    {
+      return emptyList();
+    }
+    client = std::make_unique<XmlRpc::XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
+  }
+  XmlRpcValue answer;
+  if (!client->execute(method, parameters, answer) || client->isFault() || answer.getType() != XmlRpcValue::TypeArray)
+  {
+    client.reset();
+    return emptyList();
+  }
+  // [code, status, value]; roscpp answers getBusStats by the value alone.
+  const bool wrapped = answer.size() == 3 && answer[0].getType() == XmlRpcValue::TypeInt;
+  return wrapped ? answer[2] : answer;
+}
+
+}  // namespace vibro_impact::graph
