@@ -28,14 +28,19 @@ check_usability()
     rosrun vibro_impact "${program}" --help
   done
 
-  # A master of its own, which roslaunch starts and ends.
+  # A master of its own, which roslaunch starts and ends; within five minutes, whatever happens.
   ROS_MASTER_URI="http://localhost:$(free_port)"
   export ROS_MASTER_URI
   echo "roslaunch vibro_impact simulator.launch; rostopic echo /model_info; rosrun vibro_impact shaker"
-  roslaunch vibro_impact simulator.launch &
+  timeout --kill-after=30 300 roslaunch vibro_impact simulator.launch &
   master=$!
+  # SIGTERM: processes that a script starts in the background ignore SIGINT.
   # shellcheck disable=SC2064
-  trap "kill -INT ${master} 2>/dev/null; wait ${master}" EXIT
+  trap "kill -TERM ${master} 2>/dev/null; wait ${master}" EXIT
+  for _ in $(seq 60); do
+    rosparam get /run_id >/dev/null 2>&1 && break
+    sleep 1
+  done
   timeout 60 rostopic echo -n 1 /model_info
   for program in simulator shaker; do
     rosrun --prefix 'test -x' vibro_impact "${program}"
