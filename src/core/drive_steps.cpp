@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <queue>
 #include <sstream>
 #include <stdexcept>
@@ -27,8 +26,6 @@ constexpr double surely_constant = 40.0;
 // Phases are never trusted beyond this, rad: half a degree of a thousandth of the steps' length in practice, and still
 // enough to tell steps of 0.1 % and five cycles apart.
 constexpr double smallest_phase_deviation = 2.0e-3;
-// A line through fewer cycles tells nothing of a drift.
-constexpr std::size_t fewest_cycles_of_a_drift = 4;
 // From the median of the absolute deviations to the standard deviation of a normal distribution.
 constexpr double median_to_deviation = 1.4826;
 // Samples that the fit of a single cycle needs.
@@ -66,6 +63,12 @@ struct Line
     return phase + slope * (t - time);
   }
 };
+
+// Too short to tell a drift.
+bool isScrap(const Line& line)
+{
+  return line.last - line.first < 4;
+}
 
 struct Merged
 {
@@ -126,22 +129,23 @@ double median(std::vector<double>& values)
   return *middle;
 }
 
-// Weights of the phases from their own scatter about their neighbours, which steps, being rare, do not disturb.
-void weigh(std::vector<Cycle>& cycles, std::size_t first, std::size_t last)
+// Weights of the phases of a run from their own scatter about their neighbours, which steps, being rare, do not
+// disturb.
+void weigh(std::vector<Cycle>& run)
 {
   constexpr std::size_t block = 256;
   std::vector<double> scatter;
-  for (std::size_t from = first, to = first; from < last; from = to)
+  for (std::size_t from = 0, to = 0; from < run.size(); from = to)
   {
     // A remainder too short for an estimate of its own shares that of the block before it.
-    to = last - from < 2 * block ? last : from + block;
+    to = run.size() - from < 2 * block ? run.size() : from + block;
     scatter.clear();
-    for (std::size_t k = std::max(from, first + 1); k + 1 < last && k < to; ++k)
+    for (std::size_t k = std::max<std::size_t>(from, 1); k + 1 < run.size() && k < to; ++k)
     {
-      const Cycle& before = cycles[k - 1];
-      const Cycle& after = cycles[k + 1];
-      const double share = (cycles[k].time - before.time) / (after.time - before.time);
-      scatter.push_back(cycles[k].phase - before.phase - share * (after.phase - before.phase));
+      const Cycle& before = run[k - 1];
+      const Cycle& after = run[k + 1];
+      const double share = (run[k].time - before.time) / (after.time - before.time);
+      scatter.push_back(run[k].phase - before.phase - share * (after.phase - before.phase));
     }
     double deviation = smallest_phase_deviation;
     if (scatter.size() >= 3)
@@ -156,13 +160,13 @@ void weigh(std::vector<Cycle>& cycles, std::size_t first, std::size_t last)
     }
     for (std::size_t k = from; k < to; ++k)
     {
-      cycles[k].weight = 1.0 / (deviation * deviation);
+      run[k].weight = 1.0 / (deviation * deviation);
     }
   }
 }
 
 // Straight lines through the phases of one run, merged from pairs of cycles by least growth of chi-squared.
-std::vector<Line> cutIntoLines(const std::vector<Cycle>& cycles, std::size_t first, std::size_t last)
+std::vector<Line> cutIntoLines(const std::vector<Cycle>& cycles)
 {
   struct Node
   {
@@ -174,42 +178,42 @@ std::vector<Line> cutIntoLines(const std::vector<Cycle>& cycles, std::size_t fir
   };
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<Node> nodes;
-  for (std::size_t k = first; k < last; k += 2)
+  for (std::size_t k = 0; k < cycles.size(); k += 2)
   {
     const std::size_t i = nodes.size();
-    nodes.push_back({lineThrough(cycles, k, std::min(k + 2, last)), i == 0 ? none : i - 1, i + 1});
+    nodes.push_back({lineThrough(cycles, k, std::min(k + 2, cycles.size())), i == 0 ? none : i - 1, i + 1});
   }
   nodes.back().next = none;
 
-  struct Candidate
+  struct Merge
   {
     double cost;
     std::size_t left;
     unsigned left_version;
     unsigned right_version;
-    bool operator<(const Candidate& other) const
+    bool operator<(const Merge& other) const
     {
       return cost != other.cost ? cost > other.cost : left > other.left;
     }
   };
-  std::priority_queue<Candidate> candidates;
+  std::priority_queue<Merge> merges;
   const auto consider = [&](std::size_t left)
   {
     const std::size_t right = nodes[left].next;
     const double cost = merge(nodes[left].line, nodes[right].line).cost;
     if (cost < significant_corner)
     {
-      candidates.push({cost, left, nodes[left].version, nodes[right].version});
+      merges.push({cost, left, nodes[left].version, nodes[right].version});
     }
   };
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i)
   {
     consider(i);
   }
-  while (!candidates.empty())
+  while (!merges.empty())
   {
-    const Candidate best = candidates.top();
-    candidates.pop();
+    const Merge best = merges.top();
+    merges.pop();
     Node& left = nodes[best.left];
     if (!left.alive || left.version != best.left_version || left.next == none ||
         nodes[left.next].version != best.right_version)
@@ -242,7 +246,7 @@ std::vector<Line> cutIntoLines(const std::vector<Cycle>& cycles, std::size_t fir
 }
 
 // Gives every cycle near a cut to the line it lies on: merging pairs leaves a cut one or two cycles off.
-void refineCuts(const std::vector<Cycle>& cycles, std::vector<Line>& lines)
+std::vector<Line> refineCuts(const std::vector<Cycle>& cycles, std::vector<Line> lines)
 {
   constexpr std::size_t reach = 3;
   const auto miss = [&](const Line& line, std::size_t k)
@@ -283,6 +287,7 @@ void refineCuts(const std::vector<Cycle>& cycles, std::vector<Line>& lines)
     lines[i] = lineThrough(cycles, lines[i].first, best);
     lines[i + 1] = lineThrough(cycles, best, lines[i + 1].last);
   }
+  return lines;
 }
 
 // How the frequency drifts along a line: rad per sample from end to end, and its standard deviation.
@@ -295,7 +300,7 @@ struct Drift
 Drift driftOf(const std::vector<Cycle>& cycles, const Line& line)
 {
   Drift drift;
-  if (line.last - line.first < fewest_cycles_of_a_drift)
+  if (isScrap(line))
   {
     return drift;
   }
@@ -331,15 +336,14 @@ std::vector<bool> constantLines(const std::vector<Cycle>& cycles, const std::vec
   std::vector<double> ratios;
   for (std::size_t i = 0; i < lines.size(); ++i)
   {
-    // The scraps of a line that a spike or a jump leaves say nothing of the frequency.
-    const auto scrap = [&](std::size_t k) { return lines[k].last - lines[k].first < fewest_cycles_of_a_drift; };
+    // Scraps say nothing of the frequency.
     std::size_t before = i;
-    while (before > 0 && (before == i || scrap(before)))
+    while (before > 0 && (before == i || isScrap(lines[before])))
     {
       --before;
     }
     std::size_t after = i;
-    while (after + 1 < lines.size() && (after == i || scrap(after)))
+    while (after + 1 < lines.size() && (after == i || isScrap(lines[after])))
     {
       ++after;
     }
@@ -383,10 +387,12 @@ public:
   {
   }
 
-  // Appends the stretches of constant amplitude within [first, last), in order.
-  void search(std::size_t first, std::size_t last, std::vector<Stretch>& found) const
+  // The stretches of constant amplitude within a line, in order.
+  std::vector<Stretch> within(const Line& line) const
   {
-    search(first, last, tolerance_, found);
+    std::vector<Stretch> found;
+    search(line.first, line.last, tolerance_, found);
+    return found;
   }
 
   double medianAmplitude(const Stretch& stretch) const
@@ -531,22 +537,47 @@ private:
   double tolerance_;
 };
 
-// Where the phases of two lines meet, if that is within a cycle of the cut between them: there a drive that is
-// continuous in phase changed its frequency.
-std::optional<std::uint64_t> meetingPoint(const Line& left, const Line& right, std::uint64_t cut)
+// Drops the cycles that lie by themselves between two lines: those that a spike or a jump has spoilt.
+std::vector<Cycle> withoutScraps(const std::vector<Cycle>& cycles, const std::vector<Line>& lines)
 {
-  const double difference = left.slope - right.slope;
-  if (difference == 0.0)
+  std::vector<Cycle> kept;
+  for (std::size_t i = 0; i < lines.size(); ++i)
   {
-    return std::nullopt;
+    const bool alone = i > 0 && i + 1 < lines.size() && !isScrap(lines[i - 1]) && !isScrap(lines[i + 1]);
+    if (!isScrap(lines[i]) || !alone)
+    {
+      kept.insert(kept.end(), cycles.begin() + static_cast<std::ptrdiff_t>(lines[i].first),
+                  cycles.begin() + static_cast<std::ptrdiff_t>(lines[i].last));
+    }
   }
-  const double here = static_cast<double>(cut);
-  const double away = (right.at(here) - left.at(here)) / difference;
-  if (!(std::abs(away) * std::max(left.slope, right.slope) < two_pi))
+  return kept;
+}
+
+// A step and the line through its phases.
+struct Candidate
+{
+  FoundStep step;
+  Line line;
+};
+
+// Where a drive that is continuous in phase goes over from one step to the next, the lines through their phases meet:
+// moves the boundary there, unless that is more than a cycle or two from where it was found.
+void joinSteps(Candidate& left, Candidate& right)
+{
+  const double left_end = static_cast<double>(left.step.last);
+  const double right_start = static_cast<double>(right.step.first);
+  const double cycle = two_pi / std::min(left.line.slope, right.line.slope);
+  const double difference = left.line.slope - right.line.slope;
+  const double middle = 0.5 * (left_end + right_start);
+  const double meeting = middle + (right.line.at(middle) - left.line.at(middle)) / difference;
+  const bool near = right_start - left_end < 3.0 * cycle && std::abs(meeting - left_end) < 2.0 * cycle &&
+                    std::abs(meeting - right_start) < 2.0 * cycle;
+  const bool enough = meeting > static_cast<double>(left.step.first) + 2.0 * cycle &&
+                      meeting < static_cast<double>(right.step.last) - 2.0 * cycle;
+  if (near && enough)
   {
-    return std::nullopt;
+    left.step.last = right.step.first = static_cast<std::uint64_t>(std::ceil(meeting));
   }
-  return static_cast<std::uint64_t>(std::ceil(here + away));
 }
 }  // namespace
 
@@ -703,56 +734,49 @@ struct DriveStepFinder::Implementation
     return (cycle.time - before.time) * std::min(cycle.advance, before.advance) < longest_hole * two_pi;
   }
 
-  void searchRun(std::size_t first, std::size_t last, std::vector<FoundStep>& steps)
+  void searchRun(std::vector<Cycle> run, std::vector<FoundStep>& steps) const
   {
-    const auto shortest = static_cast<std::size_t>(options.shortest_step);
-    if (last - first < shortest)
+    if (run.size() < static_cast<std::size_t>(options.shortest_step))
     {
       return;
     }
-    weigh(cycles, first, last);
-    std::vector<Line> lines = cutIntoLines(cycles, first, last);
-    refineCuts(cycles, lines);
-    const std::vector<bool> constant = constantLines(cycles, lines);
-    const StretchSearch search(cycles, options);
+    weigh(run);
+    run = withoutScraps(run, cutIntoLines(run));
+    const std::vector<Line> lines = refineCuts(run, cutIntoLines(run));
+    const std::vector<bool> constant = constantLines(run, lines);
+    const StretchSearch search(run, options);
+    std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < lines.size(); ++i)
     {
-      if (!constant[i])
+      for (const Stretch& stretch : constant[i] ? search.within(lines[i]) : std::vector<Stretch>())
       {
-        continue;
+        Candidate candidate;
+        candidate.line = lineThrough(run, stretch.first, stretch.last);
+        candidate.step.first = run[stretch.first].first;
+        candidate.step.last = run[stretch.last - 1].last;
+        candidate.step.frequency = candidate.line.slope / sample_period;
+        candidate.step.amplitude = search.medianAmplitude(stretch);
+        take(candidate, candidates);
       }
-      std::vector<Stretch> stretches;
-      search.search(lines[i].first, lines[i].last, stretches);
-      for (const Stretch& stretch : stretches)
-      {
-        FoundStep step;
-        step.first = cycles[stretch.first].first;
-        step.last = cycles[stretch.last - 1].last;
-        step.frequency = lineThrough(cycles, stretch.first, stretch.last).slope / sample_period;
-        step.amplitude = search.medianAmplitude(stretch);
-        if (i > 0 && stretch.first == lines[i].first)
-        {
-          step.first = meetingPoint(lines[i - 1], lines[i], step.first).value_or(step.first);
-        }
-        if (i + 1 < lines.size() && stretch.last == lines[i].last)
-        {
-          step.last = meetingPoint(lines[i], lines[i + 1], step.last).value_or(step.last);
-        }
-        if (step.first < step.last && step.frequency > 0.0)
-        {
-          take(step, steps);
-        }
-      }
+    }
+    for (std::size_t i = 0; i + 1 < candidates.size(); ++i)
+    {
+      joinSteps(candidates[i], candidates[i + 1]);
+    }
+    for (const Candidate& candidate : candidates)
+    {
+      steps.push_back(candidate.step);
     }
   }
 
   // A short stretch of hardly another frequency and amplitude beside a long one is the end of its soft start, not a
   // step.
-  void take(const FoundStep& step, std::vector<FoundStep>& steps) const
+  void take(const Candidate& candidate, std::vector<Candidate>& candidates) const
   {
-    if (!steps.empty())
+    if (!candidates.empty())
     {
-      FoundStep& before = steps.back();
+      const FoundStep& before = candidates.back().step;
+      const FoundStep& step = candidate.step;
       const bool close = std::abs(step.frequency - before.frequency) < 1.0e-3 * step.frequency &&
                          std::abs(step.amplitude - before.amplitude) < options.amplitude_tolerance * step.amplitude &&
                          static_cast<double>(step.first - before.last) * step.frequency * sample_period < two_pi;
@@ -762,11 +786,10 @@ struct DriveStepFinder::Implementation
       }
       if (close && 4 * (before.last - before.first) < step.last - step.first)
       {
-        before = step;
-        return;
+        candidates.pop_back();
       }
     }
-    steps.push_back(step);
+    candidates.push_back(candidate);
   }
 
   double sample_period;
@@ -835,8 +858,11 @@ std::vector<FoundStep> DriveStepFinder::finish()
   const std::vector<std::size_t>& runs = implementation_->runs;
   for (std::size_t i = 0; i < runs.size(); ++i)
   {
-    const std::size_t last = i + 1 < runs.size() ? runs[i + 1] : implementation_->cycles.size();
-    implementation_->searchRun(runs[i], last, steps);
+    const std::vector<Cycle>& cycles = implementation_->cycles;
+    const std::size_t last = i + 1 < runs.size() ? runs[i + 1] : cycles.size();
+    implementation_->searchRun(
+        {cycles.begin() + static_cast<std::ptrdiff_t>(runs[i]), cycles.begin() + static_cast<std::ptrdiff_t>(last)},
+        steps);
   }
   return steps;
 }
