@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ros/time.h>
+#include <vibro_impact/BaseExcitation.h>
+#include <vibro_impact/Impact.h>
+#include <vibro_impact/ModelInfo.h>
+
+namespace vibro_impact::graph
+{
+/// A block of samples without its samples.
+struct BlockHead
+{
+  std::uint64_t seq = 0;       ///< number of the first sample
+  std::uint64_t samples = 0;   ///< how many there are
+  ros::Time stamp;             ///< of the first sample
+  double sample_period = 0.0;  ///< s
+
+  std::uint64_t end() const
+  {
+    return seq + samples;
+  }
+};
+
+/// Who is told what a recording holds, in the order in which it was recorded.
+class RecordingSink
+{
+public:
+  virtual ~RecordingSink() = default;
+  virtual void onExcitation(const BaseExcitation& block) = 0;
+  virtual void onGap(const BlockHead& block) = 0;
+  virtual void onContactForce(const BlockHead& block, bool contact) = 0;  ///< `contact`: there is a force in the block
+  virtual void onImpact(const Impact& impact) = 0;
+  virtual void onModelInfo(const ModelInfo& info) = 0;
+};
+
+/// The topics of a run in a recording, found by the types of their messages.
+struct RecordedTopics
+{
+  std::string base_excitation;
+  std::string gap;
+  std::string contact_force;
+  std::string impact;  ///< empty if there is none: a recorder knows no topic on which nothing was ever published
+  std::string model_info;
+};
+
+/// One or several bags of one run: a split bag is read as one.
+class RecordedRun
+{
+public:
+  /// How much has been read, from 0 to 1.
+  using Progress = std::function<void(double)>;
+
+  /// Opens the bags and finds the topics; where several have one type, that in `name_space` (such as "/rig1") is taken.
+  /// Throws config::Error, with a line that names the bag and says what to do, if a bag is missing, no bag, cut off or
+  /// without an index, and if a topic is missing or ambiguous.
+  explicit RecordedRun(const std::vector<std::string>& paths, const std::string& name_space = "");
+  ~RecordedRun();
+  RecordedRun(RecordedRun&&) noexcept;
+  RecordedRun& operator=(RecordedRun&&) noexcept;
+
+  const RecordedTopics& topics() const;
+
+  /// Reads everything, ordered by the time of recording. Throws config::Error if a bag is damaged.
+  void read(RecordingSink& sink, const Progress& progress = {}) const;
+
+  /// Reads the excitation alone.
+  void readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress = {}) const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace vibro_impact::graph

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <vibro_impact/Impact.h>
+
+#include "vibro_impact/ros/recorded_run.h"
+
+namespace vibro_impact::graph
+{
+/// A range of samples of which something is missing in a recording.
+struct Loss
+{
+  std::uint64_t first = 0;  ///< number of the first sample
+  std::uint64_t last = 0;   ///< number of the sample after the last one
+  std::string reason;       ///< what is missing, where
+};
+
+/// What a recording has been found to hold.
+struct RecordingSummary
+{
+  std::uint64_t blocks = 0;    ///< of excitation, repetitions apart
+  std::uint64_t samples = 0;   ///< of excitation
+  std::uint64_t repeated = 0;  ///< blocks of excitation recorded twice
+  std::uint64_t impacts = 0;
+  std::uint64_t restarts = 0;  ///< of the simulation from rest, as the impacts' running numbers tell
+  std::uint64_t first = 0;     ///< number of the first sample
+  double sample_period = 0.0;  ///< s
+  std::vector<Loss> losses;    ///< by ascending first sample
+};
+
+/// Proves that nothing of a run is missing in its recording, or says what is: the excitation's samples are numbered
+/// without a gap, every block of it was answered by a gap and a contact force of its number, and impacts are numbered
+/// without a gap.
+class RecordingCheck
+{
+public:
+  explicit RecordingCheck(RecordedTopics topics);
+
+  /// The next block of excitation as recorded. False: a repetition, to be left. Throws config::Error where the stream
+  /// restarts, jumps in time (StreamLimits::max_stamp_jitter), changes its period or has none: the samples before and
+  /// after have no common time axis.
+  bool takeExcitation(const BlockHead& block);
+  /// The block taken last cannot be used, as `reason` says.
+  void refuseExcitation(const BlockHead& block, const std::string& reason);
+
+  void takeGap(const BlockHead& block);
+  void takeContactForce(const BlockHead& block, bool contact);
+  /// False: a repetition, to be left.
+  bool takeImpact(const Impact& impact);
+
+  /// Compares everything taken. Throws config::Error if there is no excitation, or contact but no topic of impacts.
+  RecordingSummary finish();
+
+private:
+  void expectImpact(const Impact& impact, std::uint64_t number, std::uint64_t since);
+  void compare(std::vector<BlockHead> answers, const std::string& topic, std::vector<Loss>& losses) const;
+
+  RecordedTopics topics_;
+  std::vector<BlockHead> excitation_;
+  std::vector<BlockHead> gaps_;
+  std::vector<BlockHead> forces_;
+  bool contact_ = false;
+  std::vector<Loss> losses_;
+  std::uint64_t repeated_ = 0;
+  std::uint64_t impacts_ = 0;
+  std::uint64_t restarts_ = 0;
+  std::optional<Impact> first_impact_;
+  std::optional<Impact> last_impact_;
+};
+
+}  // namespace vibro_impact::graph

@@ -1,0 +1,278 @@
+#include "vibro_impact/ros/recorded_run.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <utility>
+
+#include <ros/message_traits.h>
+#include <rosbag/bag.h>
+#include <rosbag/query.h>
+#include <rosbag/view.h>
+#include <sys/stat.h>
+#include <vibro_impact/ContactForce.h>
+#include <vibro_impact/Gap.h>
+#include <boost/shared_ptr.hpp>
+
+#include "vibro_impact/config/error.h"
+
+namespace vibro_impact::graph
+{
+namespace
+{
+void requireBag(const std::string& path)
+{
+  struct stat status
+  {
+  };
+  if (stat(path.c_str(), &status) != 0)
+  {
+    throw config::Error(path + ": no such file");
+  }
+  if (!S_ISREG(status.st_mode))
+  {
+    throw config::Error(path + ": is not a file");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file)
+  {
+    throw config::Error(path + ": cannot be read");
+  }
+  const std::string expected = "#ROSBAG V";
+  std::string magic(expected.size(), '\0');
+  file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  if (magic != expected)
+  {
+    throw config::Error(path + ": is not a bag");
+  }
+}
+
+// One line of whatever rosbag had to say.
+std::string damaged(const std::string& path, std::string reason)
+{
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  return path + ": is cut off or damaged (" + reason + "); 'rosbag reindex' may rescue what there is";
+}
+
+void openBag(rosbag::Bag& bag, const std::string& path)
+{
+  requireBag(path);
+  try
+  {
+    bag.open(path, rosbag::bagmode::Read);
+  }
+  catch (const rosbag::BagUnindexedException&)
+  {
+    throw config::Error(path + ": has no index, the recording did not end properly; 'rosbag reindex' repairs it");
+  }
+  catch (const ros::Exception& error)
+  {
+    throw config::Error(damaged(path, error.what()));
+  }
+}
+
+std::string list(const std::set<std::string>& names)
+{
+  std::string text;
+  for (const std::string& name : names)
+  {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+bool isInside(const std::string& topic, const std::string& name_space)
+{
+  std::string prefix = name_space;
+  while (!prefix.empty() && prefix.back() == '/')
+  {
+    prefix.pop_back();
+  }
+  if (!prefix.empty() && prefix.front() != '/')
+  {
+    prefix.insert(0, 1, '/');
+  }
+  const std::string absolute = topic.empty() || topic.front() != '/' ? "/" + topic : topic;
+  return absolute.compare(0, prefix.size() + 1, prefix + "/") == 0;
+}
+
+template <typename Block>
+BlockHead headOf(const Block& block, std::size_t samples)
+{
+  return {block.seq, samples, block.header.stamp, block.sample_period};
+}
+
+// What is certain of a message by its topic's type, unless the type meant something else when it was recorded.
+template <typename Message>
+boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& instance)
+{
+  const auto message = instance.instantiate<Message>();
+  if (!message)
+  {
+    throw config::Error("topic " + instance.getTopic() + ": was recorded with another definition of " +
+                        instance.getDataType() + " (" + instance.getMD5Sum() + " instead of " +
+                        ros::message_traits::md5sum<Message>() + ")");
+  }
+  return message;
+}
+}  // namespace
+
+struct RecordedRun::Implementation
+{
+  template <typename Message>
+  std::string find(const std::string& name_space, bool required)
+  {
+    const std::string type = ros::message_traits::datatype<Message>();
+    std::set<std::string> all;
+    std::set<std::string> inside;
+    for (const rosbag::ConnectionInfo* connection : everything->getConnections())
+    {
+      if (connection->datatype == type)
+      {
+        all.insert(connection->topic);
+        if (!name_space.empty() && isInside(connection->topic, name_space))
+        {
+          inside.insert(connection->topic);
+        }
+      }
+    }
+    if (all.empty() && !required)
+    {
+      return {};
+    }
+    if (all.empty())
+    {
+      throw config::Error(names + ": holds no topic of type " + type);
+    }
+    const std::set<std::string>& chosen = all.size() == 1 ? all : inside;
+    if (chosen.size() != 1)
+    {
+      throw config::Error(names + ": holds " + std::to_string(all.size()) + " topics of type " + type + " (" +
+                          list(all) + "); choose the run by --namespace" +
+                          (name_space.empty() ? std::string() : ", '" + name_space + "' does not tell them apart"));
+    }
+    return *chosen.begin();
+  }
+
+  void read(const std::vector<std::string>& wanted, const Progress& progress,
+            const std::function<void(const rosbag::MessageInstance&)>& take) const
+  {
+    try
+    {
+      rosbag::View view;
+      for (const auto& bag : bags)
+      {
+        view.addQuery(*bag, rosbag::TopicQuery(wanted));
+      }
+      const double total = static_cast<double>(view.size());
+      double done = 0.0;
+      for (const rosbag::MessageInstance& instance : view)
+      {
+        take(instance);
+        done += 1.0;
+        if (progress)
+        {
+          progress(done / total);
+        }
+      }
+    }
+    catch (const ros::Exception& error)
+    {
+      throw config::Error(damaged(names, error.what()));
+    }
+  }
+
+  std::string names;  // of the bags, for messages
+  std::vector<std::unique_ptr<rosbag::Bag>> bags;
+  std::unique_ptr<rosbag::View> everything;  // of everything, for its connections
+  RecordedTopics topics;
+};
+
+RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::string& name_space)
+    : implementation_(std::make_unique<Implementation>())
+{
+  Implementation& self = *implementation_;
+  if (paths.empty())
+  {
+    throw config::Error("no bag is given");
+  }
+  for (const std::string& path : paths)
+  {
+    self.names += (self.names.empty() ? "" : ", ") + path;
+    self.bags.push_back(std::make_unique<rosbag::Bag>());
+    openBag(*self.bags.back(), path);
+  }
+  try
+  {
+    self.everything = std::make_unique<rosbag::View>();
+    for (const auto& bag : self.bags)
+    {
+      self.everything->addQuery(*bag);
+    }
+  }
+  catch (const ros::Exception& error)
+  {
+    throw config::Error(damaged(self.names, error.what()));
+  }
+  self.topics.base_excitation = self.find<BaseExcitation>(name_space, true);
+  self.topics.gap = self.find<Gap>(name_space, true);
+  self.topics.contact_force = self.find<ContactForce>(name_space, true);
+  self.topics.impact = self.find<Impact>(name_space, false);
+  self.topics.model_info = self.find<ModelInfo>(name_space, true);
+}
+
+RecordedRun::~RecordedRun() = default;
+RecordedRun::RecordedRun(RecordedRun&&) noexcept = default;
+RecordedRun& RecordedRun::operator=(RecordedRun&&) noexcept = default;
+
+const RecordedTopics& RecordedRun::topics() const
+{
+  return implementation_->topics;
+}
+
+void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
+{
+  const RecordedTopics& topics = implementation_->topics;
+  std::vector<std::string> wanted = {topics.base_excitation, topics.gap, topics.contact_force, topics.model_info};
+  if (!topics.impact.empty())
+  {
+    wanted.push_back(topics.impact);
+  }
+  implementation_->read(wanted, progress,
+                        [&](const rosbag::MessageInstance& instance)
+                        {
+                          const std::string& topic = instance.getTopic();
+                          if (topic == topics.base_excitation)
+                          {
+                            sink.onExcitation(*messageOf<BaseExcitation>(instance));
+                          }
+                          else if (topic == topics.gap)
+                          {
+                            const auto block = messageOf<Gap>(instance);
+                            sink.onGap(headOf(*block, block->gap.size()));
+                          }
+                          else if (topic == topics.contact_force)
+                          {
+                            const auto block = messageOf<ContactForce>(instance);
+                            const bool contact = std::any_of(block->force.begin(), block->force.end(),
+                                                             [](double force) { return force > 0.0; });
+                            sink.onContactForce(headOf(*block, block->force.size()), contact);
+                          }
+                          else if (topic == topics.impact)
+                          {
+                            sink.onImpact(*messageOf<Impact>(instance));
+                          }
+                          else
+                          {
+                            sink.onModelInfo(*messageOf<ModelInfo>(instance));
+                          }
+                        });
+}
+
+void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress) const
+{
+  implementation_->read({implementation_->topics.base_excitation}, progress,
+                        [&](const rosbag::MessageInstance& instance) { sink(*messageOf<BaseExcitation>(instance)); });
+}
+
+}  // namespace vibro_impact::graph

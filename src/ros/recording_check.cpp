@@ -1,0 +1,231 @@
+#include "vibro_impact/ros/recording_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "vibro_impact/config/error.h"
+#include "vibro_impact/ros/stream_rules.h"
+
+namespace vibro_impact::graph
+{
+namespace
+{
+template <typename... Parts>
+std::string text(const Parts&... parts)
+{
+  std::ostringstream stream;
+  stream.precision(12);
+  (stream << ... << parts);
+  return stream.str();
+}
+
+bool startsBefore(const BlockHead& block, std::uint64_t seq)
+{
+  return block.seq < seq;
+}
+
+// The block of this number among blocks of ascending ones.
+const BlockHead* find(const std::vector<BlockHead>& blocks, std::uint64_t seq)
+{
+  const auto found = std::lower_bound(blocks.begin(), blocks.end(), seq, startsBefore);
+  return found != blocks.end() && found->seq == seq ? &*found : nullptr;
+}
+
+// Why an answer is none to an excitation block; empty if it is.
+std::string mismatch(const BlockHead& block, const BlockHead& answer)
+{
+  if (answer.samples != block.samples)
+  {
+    return text("has ", answer.samples, " samples instead of ", block.samples);
+  }
+  if (answer.sample_period != block.sample_period)
+  {
+    return text("has sample_period ", answer.sample_period, " s instead of ", block.sample_period, " s");
+  }
+  if (answer.stamp != block.stamp)
+  {
+    return text("has header.stamp ", answer.stamp, " instead of ", block.stamp);
+  }
+  return {};
+}
+}  // namespace
+
+RecordingCheck::RecordingCheck(RecordedTopics topics) : topics_(std::move(topics))
+{
+}
+
+bool RecordingCheck::takeExcitation(const BlockHead& block)
+{
+  const std::string place = text("topic ", topics_.base_excitation, ", seq ", block.seq, ": ");
+  if (!std::isfinite(block.sample_period) || block.sample_period <= 0.0)
+  {
+    throw config::Error(text(place, "sample_period is ", block.sample_period, " s, must be > 0"));
+  }
+  if (excitation_.empty())
+  {
+    excitation_.push_back(block);
+    return true;
+  }
+  const BlockHead& before = excitation_.back();
+  const std::uint64_t expected = before.end();
+  const std::string advice = "; cut the recording there with 'rosbag filter' and extract the parts one by one";
+  if (block.seq < expected)
+  {
+    const BlockHead* same = find(excitation_, block.seq);
+    if (same != nullptr && mismatch(*same, block).empty())
+    {
+      ++repeated_;
+      return false;
+    }
+    throw config::Error(
+        text(place, "the stream restarts, seq ", expected, " was expected (header.stamp ", block.stamp, ")", advice));
+  }
+  if (block.sample_period != before.sample_period)
+  {
+    throw config::Error(
+        text(place, "sample_period changes from ", before.sample_period, " s to ", block.sample_period, " s", advice));
+  }
+  const double elapsed = (block.stamp - before.stamp).toSec();
+  const double counted = static_cast<double>(block.seq - before.seq) * block.sample_period;
+  if (std::abs(elapsed - counted) > StreamLimits{}.max_stamp_jitter)
+  {
+    throw config::Error(
+        text(place, "header.stamp jumps, it is ", elapsed - counted, " s off what the count of samples says", advice));
+  }
+  if (block.seq > expected)
+  {
+    losses_.push_back({expected, block.seq,
+                       text("topic ", topics_.base_excitation, ": seq ", expected, " to ", block.seq - 1, " (",
+                            block.seq - expected, " samples) is missing")});
+  }
+  excitation_.push_back(block);
+  return true;
+}
+
+void RecordingCheck::refuseExcitation(const BlockHead& block, const std::string& reason)
+{
+  losses_.push_back(
+      {block.seq, block.end(), text("topic ", topics_.base_excitation, ": the block of seq ", block.seq, " ", reason)});
+}
+
+void RecordingCheck::takeGap(const BlockHead& block)
+{
+  gaps_.push_back(block);
+}
+
+void RecordingCheck::takeContactForce(const BlockHead& block, bool contact)
+{
+  forces_.push_back(block);
+  contact_ = contact_ || contact;
+}
+
+bool RecordingCheck::takeImpact(const Impact& impact)
+{
+  if (last_impact_ && impact.number == last_impact_->number && impact.seq == last_impact_->seq &&
+      impact.offset == last_impact_->offset)
+  {
+    return false;
+  }
+  const bool restart = last_impact_ && impact.number <= last_impact_->number;
+  if (last_impact_)
+  {
+    expectImpact(impact, restart ? 0 : last_impact_->number + 1, std::min(last_impact_->seq, impact.seq));
+  }
+  else
+  {
+    first_impact_ = impact;
+  }
+  restarts_ += restart ? 1 : 0;
+  ++impacts_;
+  last_impact_ = impact;
+  return true;
+}
+
+void RecordingCheck::expectImpact(const Impact& impact, std::uint64_t number, std::uint64_t since)
+{
+  if (impact.number > number)
+  {
+    const std::uint64_t missing = impact.number - number;
+    losses_.push_back({since, impact.seq + 1,
+                       text("topic ", topics_.impact, ": number ", number, " to ", impact.number - 1, " (", missing,
+                            missing == 1 ? " impact" : " impacts", " before seq ", impact.seq, ") is missing")});
+  }
+}
+
+void RecordingCheck::compare(std::vector<BlockHead> answers, const std::string& topic, std::vector<Loss>& losses) const
+{
+  std::stable_sort(answers.begin(), answers.end(),
+                   [](const BlockHead& a, const BlockHead& b) { return a.seq < b.seq; });
+  // Blocks in a row that are missing are one loss.
+  std::uint64_t missing = 0;
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  const auto flush = [&]
+  {
+    if (missing > 0)
+    {
+      losses.push_back({first, last,
+                        text("topic ", topic, ": seq ", first, " to ", last - 1, " (", missing,
+                             missing == 1 ? " block" : " blocks", ") is missing")});
+    }
+    missing = 0;
+  };
+  for (const BlockHead& block : excitation_)
+  {
+    const BlockHead* answer = find(answers, block.seq);
+    if (answer == nullptr)
+    {
+      first = missing == 0 ? block.seq : first;
+      last = block.end();
+      ++missing;
+      continue;
+    }
+    flush();
+    const std::string difference = mismatch(block, *answer);
+    if (!difference.empty())
+    {
+      losses.push_back(
+          {block.seq, block.end(), text("topic ", topic, ": the block of seq ", block.seq, " ", difference)});
+    }
+  }
+  flush();
+}
+
+RecordingSummary RecordingCheck::finish()
+{
+  if (excitation_.empty())
+  {
+    throw config::Error("topic " + topics_.base_excitation + ": holds no block of excitation");
+  }
+  if (contact_ && topics_.impact.empty())
+  {
+    throw config::Error("topic " + topics_.contact_force +
+                        ": shows contact, but the recording holds no topic of type vibro_impact/Impact");
+  }
+  // Before the first impact none can be missing unless the recording begins in the middle of the stream.
+  if (first_impact_ && excitation_.front().seq == 0)
+  {
+    expectImpact(*first_impact_, 0, 0);
+  }
+  RecordingSummary summary;
+  summary.blocks = excitation_.size();
+  summary.repeated = repeated_;
+  summary.impacts = impacts_;
+  summary.restarts = restarts_;
+  summary.first = excitation_.front().seq;
+  summary.sample_period = excitation_.front().sample_period;
+  for (const BlockHead& block : excitation_)
+  {
+    summary.samples += block.samples;
+  }
+  summary.losses = losses_;
+  compare(gaps_, topics_.gap, summary.losses);
+  compare(forces_, topics_.contact_force, summary.losses);
+  std::stable_sort(summary.losses.begin(), summary.losses.end(),
+                   [](const Loss& a, const Loss& b) { return a.first < b.first; });
+  return summary;
+}
+
+}  // namespace vibro_impact::graph

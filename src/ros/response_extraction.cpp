@@ -1,0 +1,245 @@
+#include "vibro_impact/ros/response_extraction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "vibro_impact/config/error.h"
+#include "vibro_impact/core/parameters.h"
+#include "vibro_impact/ros/conversions.h"
+
+namespace vibro_impact::graph
+{
+namespace
+{
+constexpr double two_pi = 6.283185307179586476925286766559;
+// Cycles that a loss may spoil beyond its ends: the step finder needs some to find the drive again.
+constexpr double spoilt_cycles = 4.0;
+// Share of the first of the two readings in the progress.
+constexpr double first_reading = 0.8;
+
+BlockHead headOf(const BaseExcitation& block)
+{
+  return {block.seq, block.acceleration.size(), block.header.stamp, block.sample_period};
+}
+
+// Everything that one reading of a recording tells.
+class Survey : public RecordingSink
+{
+public:
+  Survey(const RecordedTopics& topics, const core::StepSearchOptions& options)
+      : check_(topics), topics_(topics), options_(options)
+  {
+  }
+
+  void onExcitation(const BaseExcitation& block) override
+  {
+    const BlockHead head = headOf(block);
+    if (!check_.takeExcitation(head))
+    {
+      return;
+    }
+    if (!finder_)
+    {
+      finder_.emplace(block.sample_period, options_);
+    }
+    const auto bad = std::find_if(block.acceleration.begin(), block.acceleration.end(),
+                                  [](double value) { return !std::isfinite(value); });
+    if (bad != block.acceleration.end())
+    {
+      check_.refuseExcitation(head, "holds a sample that is not finite");
+    }
+    finder_->add(block.seq, block.acceleration.data(), block.acceleration.size());
+  }
+
+  void onGap(const BlockHead& block) override
+  {
+    check_.takeGap(block);
+  }
+
+  void onContactForce(const BlockHead& block, bool contact) override
+  {
+    check_.takeContactForce(block, contact);
+  }
+
+  void onImpact(const Impact& impact) override
+  {
+    if (check_.takeImpact(impact))
+    {
+      impacts_.push_back(impact);
+    }
+  }
+
+  void onModelInfo(const ModelInfo& info) override
+  {
+    if (!info_)
+    {
+      info_ = info;
+    }
+    else if (info_->configuration != info.configuration)
+    {
+      throw config::Error("topic " + topics_.model_info +
+                          ": the configuration changes within the recording; cut it there with 'rosbag filter' and "
+                          "extract the parts one by one");
+    }
+  }
+
+  RecordingSummary summary()
+  {
+    return check_.finish();
+  }
+
+  // After summary().
+  std::vector<core::FoundStep> steps()
+  {
+    return finder_->finish();
+  }
+
+  core::ReferenceScales scales() const
+  {
+    if (!info_)
+    {
+      throw config::Error("topic " + topics_.model_info + ": holds no message");
+    }
+    return core::referenceScales(fromMessage(*info_).beam1);
+  }
+
+  // On the stream's time axis, by ascending onset.
+  std::vector<core::TimedImpact> impacts(double sample_period) const
+  {
+    std::vector<core::TimedImpact> timed;
+    for (const Impact& message : impacts_)
+    {
+      timed.push_back({static_cast<double>(message.seq) * sample_period + message.offset, fromMessage(message).impact});
+    }
+    std::stable_sort(timed.begin(), timed.end(),
+                     [](const core::TimedImpact& a, const core::TimedImpact& b) { return a.onset < b.onset; });
+    return timed;
+  }
+
+private:
+  RecordingCheck check_;
+  RecordedTopics topics_;
+  core::StepSearchOptions options_;
+  std::optional<core::DriveStepFinder> finder_;
+  std::vector<Impact> impacts_;
+  std::optional<ModelInfo> info_;
+};
+
+void requireNoLoss(const RecordingSummary& summary)
+{
+  constexpr std::size_t shown = 3;
+  std::string reasons;
+  for (std::size_t i = 0; i < std::min(shown, summary.losses.size()); ++i)
+  {
+    reasons += (i == 0 ? "" : "; ") + summary.losses[i].reason;
+  }
+  if (summary.losses.size() > shown)
+  {
+    reasons += "; and " + std::to_string(summary.losses.size() - shown) + " more losses";
+  }
+  if (!reasons.empty())
+  {
+    throw config::Error("the recording is not complete: " + reasons +
+                        " (--allow-gaps leaves the steps out where something is missing)");
+  }
+}
+
+std::vector<core::MeasuredStep> measure(const RecordedRun& recording, const std::vector<core::FoundStep>& steps,
+                                        double sample_period, const RecordedRun::Progress& progress)
+{
+  core::DriveStepMeter meter(steps, sample_period);
+  std::uint64_t next = 0;
+  recording.readExcitation(
+      [&](const BaseExcitation& block)
+      {
+        // Repetitions have been found to be just that.
+        if (block.seq >= next)
+        {
+          meter.add(block.seq, block.acceleration.data(), block.acceleration.size());
+          next = block.seq + block.acceleration.size();
+        }
+      },
+      progress);
+  return meter.finish();
+}
+
+// The first loss that touches a step.
+const Loss* lossIn(const core::MeasuredStep& step, const std::vector<Loss>& losses, double sample_period)
+{
+  const double margin = spoilt_cycles * two_pi / (step.fit.frequency * sample_period);
+  for (const Loss& loss : losses)
+  {
+    if (static_cast<double>(loss.first) <= static_cast<double>(step.last) + margin &&
+        static_cast<double>(step.first) <= static_cast<double>(loss.last) + margin)
+    {
+      return &loss;
+    }
+  }
+  return nullptr;
+}
+
+std::vector<core::TimedImpact> within(const std::vector<core::TimedImpact>& impacts, const core::DriveStep& step)
+{
+  const auto before = [](const core::TimedImpact& impact, double time) { return impact.onset < time; };
+  return {std::lower_bound(impacts.begin(), impacts.end(), step.start, before),
+          std::lower_bound(impacts.begin(), impacts.end(), step.end, before)};
+}
+}  // namespace
+
+Extraction extractResponses(const RecordedRun& recording, const ExtractionOptions& options,
+                            const RecordedRun::Progress& progress)
+{
+  Survey survey(recording.topics(), options.steps);
+  recording.read(survey,
+                 [&](double share)
+                 {
+                   if (progress)
+                   {
+                     progress(first_reading * share);
+                   }
+                 });
+  Extraction extraction;
+  extraction.recording = survey.summary();
+  const RecordingSummary& summary = extraction.recording;
+  if (!options.allow_gaps)
+  {
+    requireNoLoss(summary);
+  }
+  const core::ReferenceScales scales = survey.scales();
+  const auto steps = measure(recording, survey.steps(), summary.sample_period,
+                             [&](double share)
+                             {
+                               if (progress)
+                               {
+                                 progress(first_reading + (1.0 - first_reading) * share);
+                               }
+                             });
+  if (steps.empty())
+  {
+    throw config::Error("topic " + recording.topics().base_excitation +
+                        ": no steps of constant frequency found in its " + std::to_string(summary.samples) +
+                        " samples (a swept sine has none)");
+  }
+
+  const auto impacts = survey.impacts(summary.sample_period);
+  for (const core::MeasuredStep& measured : steps)
+  {
+    const core::DriveStep step = core::driveStep(measured, summary.sample_period);
+    if (const Loss* loss = lossIn(measured, summary.losses, summary.sample_period))
+    {
+      extraction.left_out.push_back({step.frequency / scales.frequency, measured.first, measured.last, loss->reason});
+      continue;
+    }
+    extraction.responses.push_back(core::evaluateResponse(step, within(impacts, step), scales, options.response));
+  }
+  if (extraction.responses.empty())
+  {
+    throw config::Error("no step is left: all " + std::to_string(steps.size()) +
+                        " have losses, the first: " + extraction.left_out.front().reason);
+  }
+  return extraction;
+}
+
+}  // namespace vibro_impact::graph

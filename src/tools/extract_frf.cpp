@@ -1,0 +1,231 @@
+// The repetitive impact frequency response that a recording of a stepped-sine run holds.
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <boost/program_options.hpp>
+
+#include "vibro_impact/config/number.h"
+#include "vibro_impact/config/output_directory.h"
+#include "vibro_impact/config/response_table.h"
+#include "vibro_impact/ros/recorded_run.h"
+#include "vibro_impact/ros/response_extraction.h"
+
+namespace
+{
+using namespace vibro_impact;
+namespace po = boost::program_options;
+
+struct UsageError : std::runtime_error
+{
+  using std::runtime_error::runtime_error;
+};
+
+struct Arguments
+{
+  std::vector<std::string> bags;
+  std::string out;
+  std::string name_space;
+  graph::ExtractionOptions extraction;
+};
+
+po::options_description visibleOptions()
+{
+  po::options_description options("Options", 100);
+  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
+  auto add = options.add_options();
+  add("out", text("DIR"), "directory for frf.csv and impacts.csv; created if missing");
+  add("allow-gaps", "leave out the steps where something is missing, rather than refuse the recording");
+  add("namespace", text("NS"), "the run to take from a recording of several, such as /rig1");
+  add("acceleration-tolerance", text("r")->default_value("0.1"),
+      "how far the amplitude of a cycle may be off that of its step, relative; less than 1");
+  add("shortest-step", text("n")->default_value("4"), "cycles that make a step; at least 4");
+  add("lowest-frequency", text("Hz")->default_value("1"), "lowest drive frequency to look for");
+  add("help,h", "show this text");
+  return options;
+}
+
+po::variables_map parse(int argc, char** argv)
+{
+  po::options_description all = visibleOptions();
+  all.add_options()("bags", po::value<std::vector<std::string>>());
+  po::positional_options_description positional;
+  positional.add("bags", -1);
+  po::variables_map given;
+  try
+  {
+    // Long options only in full, so that a misspelt one is not taken for another.
+    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(), given);
+  }
+  catch (const po::error& error)
+  {
+    throw UsageError(error.what());
+  }
+  return given;
+}
+
+double number(const po::variables_map& given, const std::string& option, double least, double greatest)
+{
+  const std::string text = given[option].as<std::string>();
+  const auto value = config::parseNumber(text);
+  if (!value || *value < least || *value > greatest)
+  {
+    throw UsageError("--" + option + " = \"" + text + "\": must be a number from " + config::formatNumber(least) +
+                     " to " + config::formatNumber(greatest));
+  }
+  return *value;
+}
+
+Arguments interpret(const po::variables_map& given)
+{
+  if (given.count("bags") == 0)
+  {
+    throw UsageError("no bag is given");
+  }
+  if (given.count("out") == 0)
+  {
+    throw UsageError("--out is missing");
+  }
+  Arguments arguments;
+  arguments.bags = given["bags"].as<std::vector<std::string>>();
+  arguments.out = given["out"].as<std::string>();
+  arguments.name_space = given.count("namespace") != 0 ? given["namespace"].as<std::string>() : std::string();
+  arguments.extraction.allow_gaps = given.count("allow-gaps") != 0;
+  core::StepSearchOptions& steps = arguments.extraction.steps;
+  steps.amplitude_tolerance = number(given, "acceleration-tolerance", 1.0e-3, 0.9);
+  steps.lowest_frequency = number(given, "lowest-frequency", 1.0e-3, 1.0e6);
+  const std::string shortest = given["shortest-step"].as<std::string>();
+  const auto cycles = config::parseInteger(shortest);
+  if (!cycles || *cycles < 4 || *cycles > 1000000)
+  {
+    throw UsageError("--shortest-step = \"" + shortest + "\": must be a whole number from 4 to 1000000");
+  }
+  steps.shortest_step = static_cast<int>(*cycles);
+  return arguments;
+}
+
+/// A percentage on stderr: renewed in place on a terminal, every tenth a line elsewhere.
+class Progress
+{
+public:
+  ~Progress()
+  {
+    if (terminal_ && last_ > 0 && last_ < 100)
+    {
+      std::cerr << std::endl;
+    }
+  }
+
+  void operator()(double share)
+  {
+    const int percent = static_cast<int>(100.0 * share);
+    if (percent >= last_ + (terminal_ ? 1 : 10) || (percent == 100 && last_ < 100))
+    {
+      last_ = percent;
+      std::cerr << (terminal_ ? "\r" : "") << "reading " << std::setw(3) << percent << " %"
+                << (terminal_ && percent < 100 ? "" : "\n") << std::flush;
+    }
+  }
+
+private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  int last_ = 0;
+};
+
+void report(const graph::Extraction& extraction, const std::string& out)
+{
+  constexpr std::size_t shown = 10;
+  const graph::RecordingSummary& recording = extraction.recording;
+  std::cout << recording.blocks << " blocks, " << recording.samples << " samples, "
+            << (recording.losses.empty() ? "none lost" : "not complete") << "; " << recording.impacts << " impacts\n";
+  for (std::size_t i = 0; i < std::min(shown, recording.losses.size()); ++i)
+  {
+    std::cout << "lost: " << recording.losses[i].reason << "\n";
+  }
+  if (recording.losses.size() > shown)
+  {
+    std::cout << "lost: " << recording.losses.size() - shown << " more\n";
+  }
+  if (recording.repeated > 0)
+  {
+    std::cout << recording.repeated << " repeated blocks ignored\n";
+  }
+  if (recording.restarts > 0)
+  {
+    std::cout << "the simulation restarted from rest " << recording.restarts << " times\n";
+  }
+  const auto& responses = extraction.responses;
+  const auto [lowest, highest] = std::minmax_element(responses.begin(), responses.end(),
+                                                     [](const core::Response& a, const core::Response& b)
+                                                     { return a.row.omega_star < b.row.omega_star; });
+  const auto steady = std::count_if(responses.begin(), responses.end(),
+                                    [](const core::Response& response) { return response.row.steady; });
+  std::cout << responses.size() + extraction.left_out.size() << " steps found, " << extraction.left_out.size()
+            << " left out; omega* " << lowest->row.omega_star << " to " << highest->row.omega_star << ", " << steady
+            << " of " << responses.size() << " steady\n";
+  for (const graph::LeftOutStep& step : extraction.left_out)
+  {
+    std::cout << "left out: omega* " << step.omega_star << ", samples " << step.first << " to " << step.last - 1 << ": "
+              << step.reason << "\n";
+  }
+  std::size_t captured = 0;
+  for (const core::Response& response : responses)
+  {
+    captured += response.captured.size();
+  }
+  std::cout << "written to " << out << ": frf.csv (" << responses.size() << " rows), impacts.csv (" << captured
+            << " rows)" << std::endl;
+}
+
+graph::Extraction extract(const graph::RecordedRun& recording, const graph::ExtractionOptions& options)
+{
+  Progress progress;
+  return graph::extractResponses(recording, options, [&](double share) { progress(share); });
+}
+
+void run(const Arguments& arguments)
+{
+  const graph::RecordedRun recording(arguments.bags, arguments.name_space);
+  const config::OutputDirectory out(arguments.out);
+  const graph::Extraction extraction = extract(recording, arguments.extraction);
+  out.write({config::responseTable(extraction.responses), config::impactTable(extraction.responses)});
+  report(extraction, arguments.out);
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  try
+  {
+    const po::variables_map given = parse(argc, argv);
+    if (given.count("help") != 0)
+    {
+      std::cout
+          << "extract_frf BAG... --out DIR [options]\n\n"
+             "Extracts the repetitive impact frequency response from the recording of a stepped-sine run: one bag,\n"
+             "or all bags of a split one. The steps of the drive are found in the recorded excitation.\n\n"
+          << visibleOptions();
+      return 0;
+    }
+    run(interpret(given));
+    return 0;
+  }
+  catch (const UsageError& error)
+  {
+    std::cerr << "extract_frf: " << error.what() << " (see extract_frf --help)" << std::endl;
+    return 2;
+  }
+  catch (const std::exception& error)
+  {
+    std::cerr << "extract_frf: " << error.what() << std::endl;
+    return 1;
+  }
+}

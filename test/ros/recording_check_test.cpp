@@ -1,0 +1,268 @@
+#include "vibro_impact/ros/recording_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "vibro_impact/config/error.h"
+
+namespace vibro_impact::graph
+{
+namespace
+{
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr double period = 1.0e-3;
+
+BlockHead block(std::uint64_t seq, std::uint64_t samples = 100)
+{
+  return {seq, samples, ros::Time(50.0) + ros::Duration(static_cast<double>(seq) * period), period};
+}
+
+Impact impact(std::uint64_t number, std::uint64_t seq)
+{
+  Impact message;
+  message.number = number;
+  message.seq = seq;
+  return message;
+}
+
+class Check : public testing::Test
+{
+protected:
+  // Ten blocks of excitation.
+  void takeExcitation(std::uint64_t without = 1000)
+  {
+    for (std::uint64_t seq = 0; seq < 1000; seq += 100)
+    {
+      if (seq != without)
+      {
+        EXPECT_TRUE(check_.takeExcitation(block(seq)));
+      }
+    }
+  }
+
+  void takeAnswers()
+  {
+    for (std::uint64_t seq = 0; seq < 1000; seq += 100)
+    {
+      check_.takeGap(block(seq));
+      check_.takeContactForce(block(seq), true);
+    }
+  }
+
+  void expectLoss(std::uint64_t first, std::uint64_t last, const std::string& reason)
+  {
+    const auto losses = check_.finish().losses;
+    ASSERT_EQ(losses.size(), 1u);
+    EXPECT_EQ(losses[0].first, first);
+    EXPECT_EQ(losses[0].last, last);
+    EXPECT_EQ(losses[0].reason, reason);
+  }
+
+  template <typename Action>
+  void expectError(Action action, const std::string& reason)
+  {
+    try
+    {
+      action();
+      ADD_FAILURE() << "no error";
+    }
+    catch (const config::Error& error)
+    {
+      EXPECT_THAT(error.what(), HasSubstr(reason));
+    }
+  }
+
+  RecordingCheck check_{{"/base_excitation", "/gap", "/contact_force", "/impact", "/model_info"}};
+};
+
+TEST_F(Check, completeRecordingHasNoLoss)
+{
+  takeExcitation();
+  takeAnswers();
+  EXPECT_TRUE(check_.takeImpact(impact(0, 10)));
+  EXPECT_TRUE(check_.takeImpact(impact(1, 20)));
+  const RecordingSummary summary = check_.finish();
+  EXPECT_TRUE(summary.losses.empty());
+  EXPECT_EQ(summary.blocks, 10u);
+  EXPECT_EQ(summary.samples, 1000u);
+  EXPECT_EQ(summary.impacts, 2u);
+  EXPECT_EQ(summary.restarts, 0u);
+  EXPECT_EQ(summary.sample_period, period);
+}
+
+TEST_F(Check, answersMayComeFirstAndInAnyOrder)
+{
+  takeAnswers();
+  takeExcitation();
+  EXPECT_TRUE(check_.finish().losses.empty());
+}
+
+TEST_F(Check, missingExcitationIsALoss)
+{
+  takeExcitation(400);
+  takeAnswers();
+  expectLoss(400, 500, "topic /base_excitation: seq 400 to 499 (100 samples) is missing");
+}
+
+TEST_F(Check, missingAnswersInARowAreOneLoss)
+{
+  takeExcitation();
+  for (std::uint64_t seq = 0; seq < 1000; seq += 100)
+  {
+    check_.takeContactForce(block(seq), false);
+    if (seq != 300 && seq != 400)
+    {
+      check_.takeGap(block(seq));
+    }
+  }
+  expectLoss(300, 500, "topic /gap: seq 300 to 499 (2 blocks) is missing");
+}
+
+TEST_F(Check, missingForceIsALossAtTheEndToo)
+{
+  takeExcitation();
+  for (std::uint64_t seq = 0; seq < 1000; seq += 100)
+  {
+    check_.takeGap(block(seq));
+    if (seq != 900)
+    {
+      check_.takeContactForce(block(seq), false);
+    }
+  }
+  expectLoss(900, 1000, "topic /contact_force: seq 900 to 999 (1 block) is missing");
+}
+
+TEST_F(Check, answersMustHaveSamplesPeriodAndStampOfTheBlock)
+{
+  takeExcitation();
+  for (std::uint64_t seq = 0; seq < 1000; seq += 100)
+  {
+    BlockHead gap = block(seq);
+    BlockHead force = block(seq);
+    gap.samples = seq == 100 ? 99 : gap.samples;
+    gap.sample_period = seq == 200 ? 2.0 * period : gap.sample_period;
+    force.stamp += ros::Duration(seq == 300 ? 1.0e-9 : 0.0);
+    check_.takeGap(gap);
+    check_.takeContactForce(force, false);
+  }
+  const auto losses = check_.finish().losses;
+  ASSERT_EQ(losses.size(), 3u);
+  EXPECT_THAT(losses[0].reason, AllOf(HasSubstr("seq 100"), HasSubstr("99 samples instead of 100")));
+  EXPECT_THAT(losses[1].reason, AllOf(HasSubstr("seq 200"), HasSubstr("sample_period 0.002")));
+  EXPECT_THAT(losses[2].reason, AllOf(HasSubstr("seq 300"), HasSubstr("header.stamp")));
+}
+
+TEST_F(Check, impactsAreCounted)
+{
+  takeExcitation();
+  takeAnswers();
+  check_.takeImpact(impact(0, 10));
+  check_.takeImpact(impact(3, 50));
+  expectLoss(10, 51, "topic /impact: number 1 to 2 (2 impacts before seq 50) is missing");
+}
+
+TEST_F(Check, firstImpactIsNumberZeroOfARunRecordedFromItsBeginning)
+{
+  takeExcitation();
+  takeAnswers();
+  check_.takeImpact(impact(1, 10));
+  expectLoss(0, 11, "topic /impact: number 0 to 0 (1 impact before seq 10) is missing");
+}
+
+TEST_F(Check, recordingMayBeginInTheMiddleOfTheStream)
+{
+  for (const std::uint64_t seq : {500, 600})
+  {
+    check_.takeExcitation(block(seq));
+    check_.takeGap(block(seq));
+    check_.takeContactForce(block(seq), true);
+  }
+  check_.takeImpact(impact(17, 510));
+  const RecordingSummary summary = check_.finish();
+  EXPECT_TRUE(summary.losses.empty());
+  EXPECT_EQ(summary.first, 500u);
+}
+
+TEST_F(Check, simulationThatStartsAnewIsNoLoss)
+{
+  takeExcitation();
+  takeAnswers();
+  check_.takeImpact(impact(0, 10));
+  check_.takeImpact(impact(1, 50));
+  check_.takeImpact(impact(0, 70));
+  EXPECT_TRUE(check_.finish().losses.empty());
+  EXPECT_EQ(check_.finish().restarts, 1u);
+}
+
+TEST_F(Check, repetitionsAreLeft)
+{
+  takeExcitation();
+  takeAnswers();
+  EXPECT_FALSE(check_.takeExcitation(block(900)));
+  EXPECT_TRUE(check_.takeImpact(impact(0, 10)));
+  EXPECT_FALSE(check_.takeImpact(impact(0, 10)));
+  const RecordingSummary summary = check_.finish();
+  EXPECT_TRUE(summary.losses.empty());
+  EXPECT_EQ(summary.blocks, 10u);
+  EXPECT_EQ(summary.repeated, 1u);
+  EXPECT_EQ(summary.impacts, 1u);
+}
+
+TEST_F(Check, refusesARestartOfTheStream)
+{
+  takeExcitation();
+  BlockHead restarted = block(0);
+  restarted.stamp = ros::Time(80.0);
+  expectError([&] { check_.takeExcitation(restarted); }, "/base_excitation, seq 0: the stream restarts, seq 1000");
+}
+
+TEST_F(Check, refusesANewPeriod)
+{
+  takeExcitation();
+  BlockHead next = block(1000);
+  next.sample_period = 2.0e-3;
+  expectError([&] { check_.takeExcitation(next); }, "sample_period changes from 0.001 s to 0.002 s");
+}
+
+TEST_F(Check, refusesAJumpInTime)
+{
+  takeExcitation();
+  BlockHead next = block(1000);
+  next.stamp += ros::Duration(0.02);
+  EXPECT_TRUE(check_.takeExcitation(next));  // stamps of a real driver jitter
+  next = block(1100);
+  next.stamp += ros::Duration(5.0);
+  expectError([&] { check_.takeExcitation(next); }, "header.stamp jumps");
+}
+
+TEST_F(Check, refusesAPeriodThatIsNone)
+{
+  for (const double bad : {0.0, -1.0e-3, std::nan("")})
+  {
+    BlockHead first = block(0);
+    first.sample_period = bad;
+    expectError([&] { check_.takeExcitation(first); }, "must be > 0");
+  }
+}
+
+TEST_F(Check, refusesAStreamWithoutBlocks)
+{
+  expectError([&] { check_.finish(); }, "holds no block of excitation");
+}
+
+TEST(CheckWithoutImpacts, isRefusedIfThereIsContact)
+{
+  RecordingCheck silent({"/base_excitation", "/gap", "/contact_force", "", "/model_info"});
+  silent.takeExcitation(block(0));
+  silent.takeGap(block(0));
+  silent.takeContactForce(block(0), false);
+  EXPECT_TRUE(silent.finish().losses.empty());
+  silent.takeContactForce(block(0), true);
+  EXPECT_THROW(silent.finish(), config::Error);
+}
+}  // namespace
+}  // namespace vibro_impact::graph
