@@ -9,6 +9,7 @@
 #include <ros/callback_queue.h>
 
 #include "vibro_impact/core/quotient.h"
+#include "vibro_impact/ros/conversions.h"
 #include "vibro_impact/ros/progress.h"
 
 namespace vibro_impact::graph
@@ -54,11 +55,10 @@ ShakerParameters readParameters(const ros::NodeHandle& private_node)
 
 }  // namespace
 
-ros::Time sampleTime(ros::Time start, std::uint64_t seq, double sample_rate)
+Stamp sampleTime(Stamp start, std::uint64_t seq, double sample_rate)
 {
   const core::Quotient seconds = core::divide(static_cast<double>(seq), sample_rate);
-  const auto nanoseconds = static_cast<std::uint64_t>(std::llround(1.0e9 * seconds.fraction));
-  return ros::Time().fromNSec(start.toNSec() + seconds.whole * 1000000000u + nanoseconds);
+  return start + static_cast<Stamp>(seconds.whole) * 1000000000 + std::llround(1.0e9 * seconds.fraction);
 }
 
 Shaker::Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const volatile std::sig_atomic_t& stop)
@@ -199,10 +199,9 @@ void Shaker::waitWhile(const std::function<std::string()>& what, double period)
 
 void Shaker::stream()
 {
-  block_.header.frame_id = "base_frame";
   block_.sample_period = 1.0 / signal_->sampleRate();
   const std::uint64_t samples = signal_->samples();
-  const ros::Time start = ros::Time::now();
+  const Stamp start = fromTime(ros::Time::now());
   const Clock::time_point wall_start = Clock::now();
   last_answer_ = wall_start;
   earlier_deliveries_ = deliveries_;
@@ -260,13 +259,14 @@ void Shaker::waitForTurn(std::uint64_t end, Clock::time_point start)
   }
 }
 
-void Shaker::publishBlock(std::uint64_t count, ros::Time start)
+void Shaker::publishBlock(std::uint64_t count, Stamp start)
 {
-  block_.header.stamp = sampleTime(start, published_, signal_->sampleRate());
+  block_.stamp = sampleTime(start, published_, signal_->sampleRate());
   block_.seq = published_;
-  block_.acceleration.resize(count);
-  signal_->generate(published_, count, block_.acceleration.data());
-  publisher_.publish(block_);
+  block_.values.resize(count);
+  signal_->generate(published_, count, block_.values.data());
+  toMessage(block_, message_);
+  publisher_.publish(message_);
   published_ += count;
   ++blocks_;
 }

@@ -14,6 +14,7 @@
 
 #include "vibro_impact/core/drive_signal.h"
 #include "vibro_impact/ros/recording.h"
+#include "vibro_impact/ros/samples.h"
 #include "vibro_impact/ros/shaker_parameters.h"
 
 namespace vibro_impact::graph
@@ -51,7 +52,7 @@ private:
   void stream();
   /// Returns when the next block, which ends before sample `end`, may go out.
   void waitForTurn(std::uint64_t end, Clock::time_point start);
-  void publishBlock(std::uint64_t count, ros::Time start);
+  void publishBlock(std::uint64_t count, Stamp start);
   void onGap(const Gap& gap);
   /// Waits until everything published so far is answered and recorded, where that is asked for.
   void waitForArrival();
@@ -66,7 +67,8 @@ private:
   double reference_frequency_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
-  BaseExcitation block_;
+  Samples block_;
+  BaseExcitation message_;
   std::uint64_t published_ = 0;  // samples
   std::uint64_t blocks_ = 0;
   std::uint64_t answered_ = 0;  // samples
@@ -80,6 +82,6 @@ private:
 
 /// Time of sample `seq` of a stream of `sample_rate` (Hz) that began at `start`: to the nearest nanosecond, however
 /// long it is.
-ros::Time sampleTime(ros::Time start, std::uint64_t seq, double sample_rate);
+Stamp sampleTime(Stamp start, std::uint64_t seq, double sample_rate);
 
 }  // namespace vibro_impact::graph
