@@ -15,16 +15,16 @@ namespace
 {
 constexpr double two_pi = 6.283185307179586476925286766559;
 
-// Of a line against the next: the gain in chi-squared that keeps them apart. Two numbers are spent on it; pure noise
-// exceeds 40 once in half a thousand million times.
+// The growth of chi-squared that keeps two lines apart. Merging them saves two numbers; pure noise exceeds 40 once in
+// half a thousand million times.
 constexpr double significant_corner = 40.0;
 // Log likelihood ratios, twice, that decide whether a line is a piece of a sweep, or has a constant frequency. The
 // latter takes more: of the many lines that a sweep is cut into, those are favoured in which noise happens to hide the
 // drift.
 constexpr double surely_swept = -10.0;
 constexpr double surely_constant = 40.0;
-// Phases are never trusted beyond this, rad: half a degree of a thousandth of the steps' length in practice, and still
-// enough to tell steps of 0.1 % and five cycles apart.
+// Phases are never trusted beyond this, rad: clean samples do not make every trace of distortion a corner, and steps of
+// 0.1 % and five cycles are still told apart.
 constexpr double smallest_phase_deviation = 2.0e-3;
 // From the median of the absolute deviations to the standard deviation of a normal distribution.
 constexpr double median_to_deviation = 1.4826;
