@@ -42,7 +42,7 @@ class RecordedSweep(unittest.TestCase):
     def setUpClass(cls):
         cls.directory = tempfile.TemporaryDirectory()
         cls.bag = os.path.join(cls.directory.name, "sweep.bag")
-        run("roslaunch", "vibro_impact", "sweep.launch", "config:=" + CONFIG, "signal:=" + SIGNAL, "bag:=" + cls.bag)
+        run("roslaunch", os.path.join(PACKAGE, "launch", "sweep.launch"), "config:=" + CONFIG, "signal:=" + SIGNAL, "bag:=" + cls.bag)
         cls.report = tool("extract_frf", cls.bag, "--out", os.path.join(cls.directory.name, "bag"))
         tool("frf_sweep", CONFIG, "--from", "1.5", "--to", "1.7", "--points", str(POINTS), "--cycles", str(CYCLES),
              "--acceleration", "10", "--follow", "up", "--out", os.path.join(cls.directory.name, "core"))
