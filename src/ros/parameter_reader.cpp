@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "vibro_impact/config/number.h"
@@ -140,7 +139,7 @@ std::vector<std::string> ParameterReader::texts(const std::string& key, const st
   return list;
 }
 
-XmlRpcValue ParameterReader::map(const std::string& key)
+std::optional<XmlRpcValue> ParameterReader::map(const std::string& key)
 {
   const XmlRpcValue* value = find(key);
   if (value != nullptr && value->getType() == XmlRpcValue::TypeStruct)
@@ -148,9 +147,7 @@ XmlRpcValue ParameterReader::map(const std::string& key)
     return *value;
   }
   reject(key, "a map");
-  XmlRpcValue empty;
-  empty.begin();
-  return empty;
+  return std::nullopt;
 }
 
 void ParameterReader::reject(const std::string& key, const std::string& allowed)

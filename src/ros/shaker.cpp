@@ -132,8 +132,8 @@ std::string Shaker::missing()
   const std::uint32_t subscribers = publisher_.getNumSubscribers();
   if (subscribers < parameters_.wait_for_subscribers)
   {
-    append(list, std::to_string(parameters_.wait_for_subscribers) + " subscribers of " + publisher_.getTopic() +
-                     " (there are " + std::to_string(subscribers) + ")");
+    append(list, "subscribers of " + publisher_.getTopic() + " (" + std::to_string(subscribers) + " of " +
+                     std::to_string(parameters_.wait_for_subscribers) + " are there)");
   }
   if (subscriber_ && subscriber_.getNumPublishers() == 0)
   {

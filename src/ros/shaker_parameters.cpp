@@ -59,13 +59,13 @@ std::optional<double> readEither(ParameterReader& reader, const std::string& key
   if (reader.has(key) == reader.has(other))
   {
     reader.reject(key, reader.has(key) ? "left out where there is " + other
-                                       : "a number > 0 (" + unit + "), or " + other + " one (" + other_unit + ")");
+                                       : "a number > 0" + unit + ", or " + other + " one" + other_unit);
     return std::nullopt;
   }
   const bool first = reader.has(key);
   if (!isPositive(first ? value : other_value))
   {
-    reader.reject(first ? key : other, "a finite number > 0 (" + (first ? unit : other_unit) + ")");
+    reader.reject(first ? key : other, "a finite number > 0" + (first ? unit : other_unit));
     return std::nullopt;
   }
   return first ? value : other_value;
@@ -85,7 +85,7 @@ core::DriveParameters readSine(ParameterReader& reader)
   readCommon(reader, parameters);
   parameters.frequency = reader.number("frequency", nan);
   const double frequency = parameters.reference_frequency * parameters.frequency;
-  const std::optional<double> length = readEither(reader, "cycles", "duration", "1", "s");
+  const std::optional<double> length = readEither(reader, "cycles", "duration", "", " (s)");
   // What has been rejected becomes something that does not bring a second message.
   parameters.cycles = length ? (reader.has("cycles") ? *length : *length * frequency) : 1.0;
   if (!length || !isPositive(parameters.cycles))
@@ -115,8 +115,8 @@ core::DriveParameters readSweep(ParameterReader& reader, core::SweepLaw law)
   parameters.start_frequency = reader.number("start_frequency", nan);
   parameters.stop_frequency = reader.number("stop_frequency", nan);
   const bool linear = law == core::SweepLaw::linear;
-  const std::optional<double> length =
-      readEither(reader, "rate", "duration", linear ? "reference_frequency per second" : "octaves per minute", "s");
+  const std::optional<double> length = readEither(
+      reader, "rate", "duration", linear ? " (reference_frequency per second)" : " (octaves per minute)", " (s)");
   if (length && reader.has("rate"))
   {
     const double range = linear ? parameters.stop_frequency - parameters.start_frequency
@@ -194,20 +194,17 @@ ShakerParameters parseShakerParameters(const XmlRpc::XmlRpcValue& tree, const st
   ParameterReader reader(tree, "");
   std::vector<std::string> signal_faults;
   readNumber(reader, "sample_rate", false, highest_rate, " (Hz)", parameters.sample_rate);
-  const XmlRpc::XmlRpcValue signal = reader.map("signal");
-  if (reader.has("signal"))
+  if (const auto signal = reader.map("signal"))
   {
-    parameters.signal = readSignal(signal, parameters.sample_rate, signal_faults);
+    parameters.signal = readSignal(*signal, parameters.sample_rate, signal_faults);
   }
   parameters.block_rate = reader.number("block_rate", parameters.block_rate);
-  if (isPositive(parameters.sample_rate))
+  const double most = isPositive(parameters.sample_rate) ? parameters.sample_rate : highest_rate;
+  const double least = most / most_samples_per_block;
+  if (!(parameters.block_rate >= least && parameters.block_rate <= most))
   {
-    const double least = parameters.sample_rate / most_samples_per_block;
-    if (!(parameters.block_rate >= least && parameters.block_rate <= parameters.sample_rate))
-    {
-      reader.reject("block_rate", "a number from " + config::formatNumber(least) + " to " +
-                                      config::formatNumber(parameters.sample_rate) + ", the sample rate (Hz)");
-    }
+    reader.reject("block_rate", "a number from " + config::formatNumber(least) + " to " + config::formatNumber(most) +
+                                    ", the sample rate (Hz)");
   }
   readNumber(reader, "speed", true, highest_speed, "", parameters.speed);
   readCount(reader, "max_blocks_ahead", most_blocks, parameters.max_blocks_ahead);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,8 @@ public:
   /// The list of texts `key`; the same.
   std::vector<std::string> texts(const std::string& key, const std::vector<std::string>& missing);
 
-  /// The map `key`; rejects another type or none at all, and gives an empty map then.
-  XmlRpc::XmlRpcValue map(const std::string& key);
+  /// The map `key`; rejects another type and its absence.
+  std::optional<XmlRpc::XmlRpcValue> map(const std::string& key);
 
   /// Says how `key` stands on the server and what it must be.
   void reject(const std::string& key, const std::string& allowed);

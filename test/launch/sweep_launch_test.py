@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+"""sweep.launch as a user starts it: it ends by itself, and its bag holds everything."""
+
+import math
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import unittest
+
+import rosbag
+import rostest
+import yaml
+
+# Longer than anything takes on a busy machine, s.
+PATIENCE = 100.0
+
+# Five steps about the resonance, half a second of stream time: hundreds of impacts.
+SIGNAL = {
+    "signal": {"type": "stepped_sine", "acceleration": 10.0, "reference_frequency": 271.45727650517387,
+               "start_frequency": 1.5, "stop_frequency": 1.7, "frequency_step": 0.05, "cycles_per_step": 50},
+    "sample_rate": 50000.0}
+STEPS = [1.5, 1.55, 1.6, 1.65, 1.7]
+SAMPLES = math.ceil(50000.0 * sum(50 / (271.45727650517387 * step) for step in STEPS))
+
+
+class SweepLaunchTest(unittest.TestCase):
+    def setUp(self):
+        self.directory = tempfile.mkdtemp()
+        self.signal = os.path.join(self.directory, "signal.yaml")
+        with open(self.signal, "w") as stream:
+            yaml.safe_dump(SIGNAL, stream)
+
+    def tearDown(self):
+        shutil.rmtree(self.directory)
+
+    def launch(self, *arguments):
+        with socket.socket() as probe:
+            probe.bind(("localhost", 0))
+            port = probe.getsockname()[1]
+        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port, ROS_LOG_DIR=self.directory)
+        process = subprocess.Popen(
+            ["roslaunch", "-p", str(port), "vibro_impact", "sweep.launch", "signal:=" + self.signal, *arguments],
+            env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        try:
+            output, _ = process.communicate(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGINT)
+            output, _ = process.communicate()
+            self.fail("did not end by itself:\n" + output)
+        return output
+
+    def expect_complete(self, path, output):
+        streams = {"base_excitation": 0, "gap": 0, "contact_force": 0}
+        periods = set()
+        impacts = 0
+        models = 0
+        with rosbag.Bag(path) as bag:
+            for topic, message, _ in bag.read_messages():
+                topic = topic.lstrip("/")
+                if topic in streams:
+                    samples = {"base_excitation": "acceleration", "gap": "gap", "contact_force": "force"}[topic]
+                    self.assertEqual(message.seq, streams[topic], topic + "\n" + output)
+                    streams[topic] += len(getattr(message, samples))
+                    periods.add(message.sample_period)
+                elif topic == "impact":
+                    self.assertEqual(message.number, impacts, output)
+                    impacts += 1
+                elif topic == "model_info":
+                    models += 1
+        self.assertEqual(streams, dict.fromkeys(streams, SAMPLES), output)
+        self.assertEqual(periods, {2.0e-5})
+        self.assertGreater(impacts, 200)
+        self.assertEqual(models, 1)
+
+    def test_records_everything_and_ends(self):
+        # Of a name that a shell would cut into pieces.
+        path = os.path.join(self.directory, "a sweep.bag")
+        output = self.launch("bag:=" + path)
+        self.assertEqual([name for name in os.listdir(self.directory) if ".bag" in name], ["a sweep.bag"], output)
+        self.expect_complete(path, output)
+        self.assertIn("published %d samples, all of them answered, all of them recorded by /record" % SAMPLES, output)
+        self.assertIn("100.0 %, 461.5 Hz (1.700)", output)
+
+    def test_keeps_to_a_speed(self):
+        path = os.path.join(self.directory, "paced.bag")
+        output = self.launch("bag:=" + path, "speed:=0.5", "block_rate:=200")
+        self.expect_complete(path, output)
+
+    def test_runs_without_a_recording(self):
+        output = self.launch("record:=false")
+        self.assertEqual([name for name in os.listdir(self.directory) if ".bag" in name], [], output)
+        self.assertIn("published %d samples, all of them answered" % SAMPLES, output)
+
+    def test_a_recorder_that_cannot_write_ends_it(self):
+        output = self.launch("bag:=" + os.path.join(self.directory, "missing", "a.bag"))
+        self.assertIn("record", output)
+        self.assertNotIn("published", output)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("vibro_impact", "sweep_launch_test", SweepLaunchTest)
