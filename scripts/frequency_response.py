@@ -27,7 +27,7 @@ Measured = namedtuple("Measured", "text omega_star met")
 # name, the paper's value as text, omega* to mark (None: not on the frequency axis), when it counts as met
 Landmark = namedtuple("Landmark", "name paper omega_star allowed")
 
-RATIO = Landmark("in-contact over free frequency, rigid surface", "4.01", None, "4.00 to 4.02")
+RATIO = Landmark("in-contact over free frequency", "4.01", None, "4.00 to 4.02")
 RESONANCE = Landmark("resonance", "1.60", 1.60, "1.590 to 1.605")
 HARMONIC = Landmark("harmonic", "3.20, lower", 3.20, "3.185 to 3.205, period 2, 0.29 to 0.33 of the resonance")
 DOUBLING = Landmark("period one to period two", "2.40", 2.40, "within 2.39 to 2.41")

@@ -130,12 +130,13 @@ class LandmarksTest(ScriptTest):
     def lines(self, *arguments):
         result = self.run_script("landmarks", *arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
-        return {line.split("  ")[0]: line for line in result.stdout.splitlines()[2:]}
+        table = result.stdout.split("\n\n")[0]
+        return {line.split("  ")[0]: line for line in table.splitlines()[2:]}
 
     def test_all_are_found_and_met(self):
         lines = self.lines(self.beams, "--compare", self.rigid)
         self.assertEqual(len(lines), 4)
-        self.assertIn("4.005  ", lines["in-contact over free frequency, rigid surface"])
+        self.assertIn("4.005  ", lines["in-contact over free frequency"])
         self.assertIn(" 1.600 ", lines["resonance"])
         self.assertIn(" 2.400 to 2.410 ", lines["period one to period two"])
         self.assertIn(" 3.200, period 2, 0.30 ", lines["harmonic"])
@@ -165,7 +166,7 @@ class LandmarksTest(ScriptTest):
         write_tables(self.beams, [row for row in synthetic_response() if row[0] < 1.9])
         lines = self.lines(self.beams)
         self.assertIn(" met", lines["resonance"])
-        for name in ("in-contact over free frequency, rigid surface", "period one to period two", "harmonic"):
+        for name in ("in-contact over free frequency", "period one to period two", "harmonic"):
             self.assertIn("not measured", lines[name])
 
     def test_impulse_star_of_an_impact_follows_from_the_table(self):
