@@ -17,6 +17,10 @@ namespace
 constexpr double two_pi = 6.28318530717958647693;
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
+/// Rounding error of the gap, as a share of the terms it is summed from: an allowance for what adds up in 1e5
+/// intervals.
+constexpr double gap_rounding = 128.0 * epsilon;
+
 /// Derivatives of the gap below this share of the terms they are summed from are rounding, and taken for zero.
 constexpr double derivative_rounding = 1.0e-9;
 
@@ -47,6 +51,7 @@ SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool 
     v.displacement = v.velocity = Eigen::VectorXd::Zero(modes);
     tabulate(state);
   }
+  lowest_frequency_ = std::min(model_->free().frequency(0), model_->contact().frequency(0));
   rest();
 }
 
@@ -228,7 +233,7 @@ void SwitchedMotion::rest()
   start_acceleration_ = slope_ = time_ = 0.0;
   gap_ = now().line_constant;
   rate_ = bound_ = 0.0;
-  resolution_ = 16.0 * epsilon * std::abs(model_->clearance());
+  resolution_ = gap_rounding * std::abs(model_->clearance());
   intervals_ = impacts_ = 0;
   if (state_ == 1)
   {
@@ -245,7 +250,7 @@ void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, con
   const Eigen::ArrayXd& deflection = model_->free().contact_deflection;
   gap_ = model_->clearance() + deflection.matrix().dot(displacement);
   rate_ = deflection.matrix().dot(velocity);
-  resolution_ = 16.0 * epsilon * (std::abs(model_->clearance()) + (deflection * displacement.array()).abs().sum());
+  resolution_ = gap_rounding * (std::abs(model_->clearance()) + (deflection * displacement.array()).abs().sum());
   in_coordinates_ = true;
   if (gap_ < -resolution_)
   {
@@ -399,9 +404,9 @@ void SwitchedMotion::refreshBound()
   const Tables& t = now();
   bound_ = boundOfDerivative(2);
   const double farthest = std::max(std::abs(start_acceleration_), std::abs(start_acceleration_ + slope_ * length_));
-  resolution_ = 16.0 * epsilon *
-                (std::abs(model_->clearance()) + std::abs(t.line_constant) + std::abs(t.line_compliance) * farthest +
-                 std::abs(t.line_lag * slope_) + boundOfDerivative(0));
+  resolution_ =
+      gap_rounding * (std::abs(model_->clearance()) + std::abs(t.line_constant) +
+                      std::abs(t.line_compliance) * farthest + std::abs(t.line_lag * slope_) + boundOfDerivative(0));
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -533,6 +538,8 @@ void SwitchedMotion::locateSwitches(ImpactSink& sink)
   std::int64_t smallest = 1;
   std::int64_t switches = 0;
   int steps = 0;
+  bool settled = false;  // the state was decided, and the gap could not be told from zero since
+  std::int64_t settled_at = 0;
   refreshBound();
   while (tick < total)
   {
@@ -545,21 +552,31 @@ void SwitchedMotion::locateSwitches(ImpactSink& sink)
       break;
     }
     ++steps_total_;
-    std::int64_t ticks = crossed() ? 0 : safeTicks(left);
-    if (ticks == 0)
+    const bool has_crossed = crossed();
+    settled = settled && (tick == settled_at || std::abs(gap_) <= resolution_);
+    std::int64_t ticks = has_crossed ? 0 : safeTicks(left);
+    if (ticks == 0 && (has_crossed || !settled))
     {
       time_ = time;
       switchState(time, sink);
       ++switches;
       steps = 0;
       smallest = 1;
+      settled = true;
+      settled_at = tick;
       continue;
     }
     if (++steps % steps_before_coarser == 0)
     {
       smallest *= 2;
     }
-    if (ticks < smallest && smallest > 1)
+    if (ticks == 0)
+    {
+      // Each state would leave for the other. It makes no difference which one it is until the gap shows.
+      ticks = std::min(smallest, left);
+      smallest *= 2;
+    }
+    else if (ticks < smallest && side() * gap_ >= -resolution_)
     {
       // Near grazing: a step that may overrun a crossing. Try it on a copy; if it does, halve it.
       ticks = std::min(smallest, left);
@@ -575,8 +592,17 @@ void SwitchedMotion::locateSwitches(ImpactSink& sink)
         continue;
       }
     }
+    else
+    {
+      ticks = std::min(std::max(ticks, smallest), left);
+    }
     step(ticks, time);
     tick += ticks;
+  }
+  // A switch that has come due is not left to the next interval: the sample at its start is of the new state.
+  if (crossed() && switches < switch_limit_)
+  {
+    switchState(length_, sink);
   }
 }
 
@@ -596,7 +622,7 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
     time = rate >= 0.0 ? length_ : -distance / rate;
   }
   const double ticks = time / tick_;
-  if (ticks < 65536.0 && distance <= resolution_ && std::abs(rate) <= derivative_rounding * boundOfDerivative(1))
+  if (ticks < 65536.0 && distance <= resolution_ && hasNoRate())
   {
     return departureTicks(left);
   }
@@ -612,6 +638,14 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
     return std::clamp(static_cast<std::int64_t>(std::min(through, most_ticks_through)), safe, left);
   }
   return safe;
+}
+
+/// Whether the velocity is zero as far as the gap can tell: the acceleration turns it before it takes the gap further
+/// than its rounding error.
+bool SwitchedMotion::hasNoRate() const
+{
+  const double acceleration = now().derivative.col(3).dot(vectors().exponentials);
+  return rate_ * rate_ <= 2.0 * resolution_ * std::max(std::abs(acceleration), derivative_rounding * bound_);
 }
 
 /// At gap zero with zero velocity the first derivative that is not zero decides: away from contact (no switch) or into
@@ -722,6 +756,7 @@ void SwitchedMotion::beginEpisode(double offset, double elapsed, double approach
   episode_.elapsed = elapsed;
   episode_.energy = energy;
   episode_.smallest_gap = gap_;
+  episode_.first_step = steps_total_;
 }
 
 // Over a piece of the episode inside one interval the integral of the gap is that of a line plus J(z_end) - J(z_start),
@@ -835,10 +870,13 @@ void SwitchedMotion::endEpisode(ImpactSink& sink, double energy)
   impact.peak_force = std::max(0.0, -model_->stiffness() * episode_.smallest_gap);
   impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
   impact.energy_lost = episode_.energy + episode_.work - energy;
-  // An episode no deeper than the gap's rounding has no impulse that could be told from zero.
-  if (impact.impulse < 0.0 && impact.impulse > -model_->stiffness() * resolution_ * impact.duration)
+  // The impulse is the small difference of large terms where the episode is shallow or short. Within their rounding,
+  // which adds up over its intervals and steps, it is what duration and peak allow.
+  const std::uint64_t roundings = 1 + intervals_ - impact.interval + steps_total_ - episode_.first_step;
+  const double rounding = static_cast<double>(roundings) * model_->stiffness() * resolution_ / lowest_frequency_;
+  if (std::abs(impact.impulse) <= rounding)
   {
-    impact.impulse = 0.0;
+    impact.impulse = std::clamp(impact.impulse, 0.0, impact.peak_force * impact.duration);
   }
   sink.onImpact(impact);
 }

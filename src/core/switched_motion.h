@@ -163,6 +163,7 @@ private:
     double gap_integral = 0.0;
     double work = 0.0;    // of the base on the structures
     double energy = 0.0;  // at the onset
+    std::uint64_t first_step = 0;
     // the piece: the part of the episode inside the present interval
     double piece_start = 0.0;    // time in the interval
     double momentum_form = 0.0;  // integral form of sum Gamma z at its start
@@ -193,6 +194,7 @@ private:
   void locateSwitches(ImpactSink& sink);
   void step(std::int64_t ticks, double time);
   std::int64_t safeTicks(std::int64_t left);
+  bool hasNoRate() const;
   std::int64_t departureTicks(std::int64_t left);
   bool crossed() const;
   void switchState(double time, ImpactSink& sink);
@@ -248,6 +250,7 @@ private:
   double tick_ = 0.0;
   int doublings_ = 0;  // K
   std::int64_t switch_limit_ = switch_allowance;
+  double lowest_frequency_ = 0.0;  // rad/s
   double drive_frequency_ = 0.0;
   double drive_amplitude_ = 0.0;
   std::array<Tables, 2> tables_;
