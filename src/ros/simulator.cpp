@@ -121,10 +121,11 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
   {
     return;
   }
-  toMessage(answer.gap, gap_);
-  gap_publisher_.publish(gap_);
   toMessage(answer.force, force_);
   force_publisher_.publish(force_);
+  // The gap comes last: who has it knows that all of the block's answer is on its way.
+  toMessage(answer.gap, gap_);
+  gap_publisher_.publish(gap_);
   for (const Extremes& extremes : extremes_.take(answer.gap, answer.force))
   {
     geometry_msgs::WrenchStamped wrench;
