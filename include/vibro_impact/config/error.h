@@ -6,7 +6,8 @@
 
 namespace vibro_impact::config
 {
-/// What is wrong with a file, a directory or a set of parameters: what() is a whole message for the user, which names it.
+/// What is wrong with a file, a directory or a set of parameters: what() is a whole message for the user, which names
+/// it.
 class Error : public std::runtime_error
 {
 public:
