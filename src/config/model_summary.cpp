@@ -65,7 +65,7 @@ OutputFile modelTable(const ModelSummary& summary)
       text += key + "," + formatNumber(*value) + "\n";
     }
   };
-  const auto addAll = [&add](const std::string& prefix, const std::vector<double>& values, const std::string& suffix)
+  const auto add_all = [&add](const std::string& prefix, const std::vector<double>& values, const std::string& suffix)
   {
     for (std::size_t n = 0; n < values.size(); ++n)
     {
@@ -75,9 +75,9 @@ OutputFile modelTable(const ModelSummary& summary)
   add("free_frequency_hz", summary.free_frequency_hz);
   add("contact_frequency_hz", summary.contact_frequency_hz);
   add("frequency_ratio", summary.frequency_ratio);
-  addAll("free_", summary.free_frequencies, "_hz");
-  addAll("contact_", summary.contact_frequencies, "_hz");
-  addAll("mapping_loss_", summary.mapping_loss, "");
+  add_all("free_", summary.free_frequencies, "_hz");
+  add_all("contact_", summary.contact_frequencies, "_hz");
+  add_all("mapping_loss_", summary.mapping_loss, "");
   return {"model.csv", text};
 }
 

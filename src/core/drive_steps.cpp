@@ -497,12 +497,12 @@ private:
       value = std::abs(value - level);
     }
     const double allowed = std::max(5.0 * median_to_deviation * median(values), 0.02 * level);
-    const auto standsOut = [&](std::size_t k) { return std::abs(cycles_[k].amplitude - level) > allowed; };
-    while (stretch.first < stretch.last && standsOut(stretch.first))
+    const auto stands_out = [&](std::size_t k) { return std::abs(cycles_[k].amplitude - level) > allowed; };
+    while (stretch.first < stretch.last && stands_out(stretch.first))
     {
       ++stretch.first;
     }
-    while (stretch.first < stretch.last && standsOut(stretch.last - 1))
+    while (stretch.first < stretch.last && stands_out(stretch.last - 1))
     {
       --stretch.last;
     }
@@ -867,7 +867,7 @@ std::vector<FoundStep> DriveStepFinder::finish()
   return steps;
 }
 
-DriveStepMeter::DriveStepMeter(std::vector<FoundStep> steps, double sample_period)
+DriveStepMeter::DriveStepMeter(const std::vector<FoundStep>& steps, double sample_period)
 {
   for (const FoundStep& step : steps)
   {

@@ -106,7 +106,7 @@ BlockHead headOf(const Block& block, std::size_t samples)
 template <typename Message>
 boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& instance)
 {
-  const auto message = instance.instantiate<Message>();
+  auto message = instance.instantiate<Message>();
   if (!message)
   {
     throw config::Error("topic " + instance.getTopic() + ": was recorded with another definition of " +

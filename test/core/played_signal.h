@@ -78,10 +78,10 @@ public:
   PlayedSignal& addNoise(double deviation, unsigned seed)
   {
     std::mt19937 generator(seed);
-    std::normal_distribution<double> noise(0.0, deviation);
+    std::normal_distribution<double> noise;  // which takes no deviation of zero
     for (double& sample : samples_)
     {
-      sample += noise(generator);
+      sample += deviation * noise(generator);
     }
     return *this;
   }

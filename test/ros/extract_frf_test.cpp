@@ -25,7 +25,6 @@ namespace
 {
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 using testing::StartsWith;
 
 constexpr double sample_rate = 20000.0;

@@ -69,7 +69,7 @@ class DriveStepMeter
 {
 public:
   /// `steps` as DriveStepFinder::finish() gave them.
-  DriveStepMeter(std::vector<FoundStep> steps, double sample_period);
+  DriveStepMeter(const std::vector<FoundStep>& steps, double sample_period);
 
   /// Takes samples by ascending number, those of every step without a gap.
   void add(std::uint64_t first, const double* samples, std::size_t count);
