@@ -934,7 +934,8 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
     third_derivative_bound = boundOfDerivative(3, v.before);
   }
   const bool minimum_inside = from.rate < 0.0 && to.rate > 0.0;
-  const double fraction = minimum_inside ? from.rate / (from.rate - to.rate) : 0.5;
+  // Linear interpolation of the rate alone may go on moving one end only: every other time the middle.
+  const double fraction = minimum_inside && depth % 2 == 0 ? from.rate / (from.rate - to.rate) : 0.5;
   const std::int64_t range = to.tick - from.tick;
   const std::int64_t chosen =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(fraction * static_cast<double>(range)), 1, range - 1);
