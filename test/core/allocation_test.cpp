@@ -19,7 +19,7 @@ std::size_t allocations = 0;
 }
 
 // Eigen's own arrays come from malloc, so that is what has to be counted.
-extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* __libc_malloc(std::size_t);  // NOLINT(readability-identifier-naming): the C library's
 extern "C" void* malloc(std::size_t size) noexcept
 {
   ++allocations;

@@ -94,7 +94,7 @@ SystemParameters randomParameters(Dice& dice)
   // Deflections are of the order of a/omega_11^2, with a = 1 m/s^2.
   const double deflection = 1.0 / std::pow(referenceScales(parameters.beam1).frequency, 2.0);
   const double size = deflection * dice.decades(-4.0, 0.5);
-  const double sign = static_cast<double>(dice.whole(-1, 1));
+  const auto sign = static_cast<double>(dice.whole(-1, 1));
   parameters.contact.clearance = sign * size;
   return parameters;
 }
