@@ -72,7 +72,6 @@ public:
       const bool last = step == end - time_;
       State next(state_.size());
       const double start = time_;
-      double taken = step;
       if (controlled_.try_step(std::cref(*this), state_, time_, next, step) ==
           boost::numeric::odeint::controlled_step_result::fail)
       {
@@ -82,8 +81,7 @@ public:
       {
         time_ = end;
       }
-      taken = time_ - start;
-      takeStep(start, taken, next);
+      takeStep(start, time_ - start, next);
     }
   }
 
@@ -295,6 +293,7 @@ struct Case
   double omega_star = 0.0;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): Google Test looks for this name.
 void PrintTo(const Case& c, std::ostream* stream)
 {
   *stream << c.name;
