@@ -63,7 +63,7 @@ SineFitter::SineFitter(double frequency, double sample_period, std::size_t count
 
 std::size_t SineFitter::fewestSamples(int harmonics)
 {
-  return static_cast<std::size_t>(2 * harmonics + 3);
+  return 2 * static_cast<std::size_t>(harmonics) + 3;
 }
 
 std::size_t SineFitter::add(const double* samples, std::size_t count)

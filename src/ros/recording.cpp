@@ -28,6 +28,18 @@ XmlRpcValue emptyList()
   return list;
 }
 
+// The elements of an array, which XmlRpcValue itself cannot iterate over: its begin() is that of a struct.
+std::vector<XmlRpcValue> elements(const XmlRpcValue& array)
+{
+  std::vector<XmlRpcValue> values;
+  values.reserve(static_cast<std::size_t>(array.size()));
+  for (int i = 0; i < array.size(); ++i)  // NOLINT(modernize-loop-convert): for the same reason
+  {
+    values.push_back(array[i]);
+  }
+  return values;
+}
+
 // Counters travel as 32-bit integers that wrap around.
 std::uint64_t count(XmlRpcValue& value)
 {
@@ -39,15 +51,12 @@ std::uint64_t count(XmlRpcValue& value)
 std::vector<XmlRpcValue> connections(XmlRpcValue& statistics, const std::string& topic)
 {
   std::vector<XmlRpcValue> entries;
-  for (int i = 0; i < statistics.size(); ++i)
+  for (XmlRpcValue& of_topic : elements(statistics))
   {
-    if (static_cast<std::string&>(statistics[i][0]) == topic)
+    if (static_cast<std::string&>(of_topic[0]) == topic)
     {
-      XmlRpcValue& list = statistics[i][1];
-      for (int j = 0; j < list.size(); ++j)
-      {
-        entries.push_back(list[j]);
-      }
+      const std::vector<XmlRpcValue> more = elements(of_topic[1]);
+      entries.insert(entries.end(), more.begin(), more.end());
     }
   }
   return entries;
@@ -57,9 +66,8 @@ std::vector<XmlRpcValue> connections(XmlRpcValue& statistics, const std::string&
 // connection the statistics [connection, bytes, bytes of data, messages, ...].
 void addSent(XmlRpcValue& bus_info, XmlRpcValue& bus_statistics, const std::string& subscriber, Delivery& delivery)
 {
-  for (int i = 0; i < bus_info.size(); ++i)
+  for (XmlRpcValue& connection : elements(bus_info))
   {
-    XmlRpcValue& connection = bus_info[i];
     if (static_cast<std::string&>(connection[1]) != subscriber || static_cast<std::string&>(connection[2]) != "o" ||
         static_cast<std::string&>(connection[4]) != delivery.topic)
     {
@@ -106,14 +114,16 @@ void Recording::discover()
   {
     return;
   }
-  XmlRpcValue& published = state[0];  // [[topic, [publisher, ...]], ...]
-  for (int i = 0; i < published.size(); ++i)
+  for (XmlRpcValue& published : elements(state[0]))  // [[topic, [publisher, ...]], ...]
   {
-    const auto topic = std::find(topics_.begin(), topics_.end(), static_cast<std::string&>(published[i][0]));
-    for (int j = 0; topic != topics_.end() && j < published[i][1].size(); ++j)
+    const auto topic = std::find(topics_.begin(), topics_.end(), static_cast<std::string&>(published[0]));
+    if (topic == topics_.end())
     {
-      const std::string& publisher = static_cast<std::string&>(published[i][1][j]);
-      publishers_[publisher].push_back(static_cast<std::size_t>(topic - topics_.begin()));
+      continue;
+    }
+    for (XmlRpcValue& publisher : elements(published[1]))
+    {
+      publishers_[static_cast<std::string&>(publisher)].push_back(static_cast<std::size_t>(topic - topics_.begin()));
     }
   }
   XmlRpcValue process = request(recorder_, "getPid");
