@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""plot_frf and landmarks, run as a user runs them on synthetic tables."""
+"""plot_frf and landmarks, run as a user runs them on synthetic tables; what demo refuses before it does anything."""
 
 import os
 import subprocess
@@ -182,6 +182,24 @@ class LandmarksTest(ScriptTest):
 
     def test_missing_folder(self):
         self.assert_refused(self.run_script("landmarks", os.path.join(self.folder, "nowhere")), "nowhere", "No such file")
+
+    def test_every_verdict_has_a_head(self):
+        result = self.run_script("landmarks", self.beams, "--compare", self.rigid)
+        self.assertEqual(result.stdout.splitlines()[0].split()[:2], ["landmark", "paper"])
+        self.assertEqual(result.stdout.splitlines()[0].count("met?"), 2)
+
+
+class DemoTest(ScriptTest):
+    def test_folder_that_cannot_be_written(self):
+        blocked = os.path.join(self.folder, "file")
+        with open(blocked, "w"):
+            pass
+        result = self.run_script("demo", "--out", os.path.join(blocked, "out"))
+        self.assert_refused(result, "cannot create", blocked)
+        self.assertEqual(result.stdout, "")
+
+    def test_unknown_option(self):
+        self.assert_refused(self.run_script("demo", "--output", self.out), "unknown option '--output'", "--out DIR")
 
 
 if __name__ == "__main__":
