@@ -102,6 +102,16 @@ class SweepLaunchTest(unittest.TestCase):
         self.assertIn("record", output)
         self.assertNotIn("published", output)
 
+    def test_a_simulator_that_fails_ends_it(self):
+        config = os.path.join(self.directory, "config.yaml")
+        with open(config, "w") as stream:
+            stream.write("beam2: rigid\n")
+        output = self.launch("config:=" + config)
+        self.assertIn("beam1 is missing", output)
+        # Nobody has waited for it until the timeout.
+        self.assertNotIn("in vain", output)
+        self.assertNotIn("published", output)
+
 
 if __name__ == "__main__":
     rostest.rosrun("vibro_impact", "sweep_launch_test", SweepLaunchTest)
