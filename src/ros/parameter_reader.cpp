@@ -98,6 +98,37 @@ std::int64_t ParameterReader::integer(const std::string& key, std::int64_t missi
   }
 }
 
+double ParameterReader::positive(const std::string& key, double missing, double most, const std::string& unit)
+{
+  const double value = number(key, missing);
+  if (!(value > 0.0 && value <= most))
+  {
+    reject(key, "a number > 0 and <= " + config::formatNumber(most) + unit);
+  }
+  return value;
+}
+
+double ParameterReader::nonNegative(const std::string& key, double missing, double most, const std::string& unit)
+{
+  const double value = number(key, missing);
+  if (!(value >= 0.0 && value <= most))
+  {
+    reject(key, "a number >= 0 and <= " + config::formatNumber(most) + unit);
+  }
+  return value;
+}
+
+std::uint32_t ParameterReader::count(const std::string& key, std::uint32_t missing, std::uint32_t most)
+{
+  const std::int64_t value = integer(key, missing);
+  if (value < 0 || value > most)
+  {
+    reject(key, "a whole number from 0 to " + std::to_string(most));
+    return missing;
+  }
+  return static_cast<std::uint32_t>(value);
+}
+
 std::string ParameterReader::text(const std::string& key, const std::string& missing)
 {
   const XmlRpcValue* value = find(key);
@@ -148,6 +179,20 @@ std::optional<XmlRpcValue> ParameterReader::map(const std::string& key)
   }
   reject(key, "a map");
   return std::nullopt;
+}
+
+XmlRpcValue ParameterReader::take(const std::vector<std::string>& keys)
+{
+  XmlRpcValue taken;
+  taken.begin();  // makes it a map, even if it stays empty
+  for (const std::string& key : keys)
+  {
+    if (const XmlRpcValue* value = find(key))
+    {
+      taken[key] = *value;
+    }
+  }
+  return taken;
 }
 
 void ParameterReader::reject(const std::string& key, const std::string& allowed)

@@ -18,32 +18,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double highest_rate = 1.0e9;
 constexpr double highest_speed = 1.0e6;
 constexpr double longest_wait = 86400.0;
-constexpr std::int64_t most_blocks = 1000000;
-constexpr std::int64_t most_subscribers = 1000;
+constexpr std::uint32_t most_blocks = 1000000;
+constexpr std::uint32_t most_subscribers = 1000;
 // A block of more is none that anybody could want.
 constexpr double most_samples_per_block = 1.0e6;
-
-void readNumber(ParameterReader& reader, const std::string& key, bool zero_allowed, double most,
-                const std::string& unit, double& value)
-{
-  value = reader.number(key, value);
-  if (!((zero_allowed ? value >= 0.0 : value > 0.0) && value <= most))
-  {
-    reader.reject(key, std::string("a number ") + (zero_allowed ? ">= 0" : "> 0") +
-                           " and <= " + config::formatNumber(most) + unit);
-  }
-}
-
-void readCount(ParameterReader& reader, const std::string& key, std::int64_t most, std::uint32_t& value)
-{
-  const std::int64_t given = reader.integer(key, value);
-  if (given < 0 || given > most)
-  {
-    reader.reject(key, "a whole number from 0 to " + std::to_string(most));
-    return;
-  }
-  value = static_cast<std::uint32_t>(given);
-}
 
 bool isPositive(double value)
 {
@@ -193,7 +171,7 @@ ShakerParameters parseShakerParameters(const XmlRpc::XmlRpcValue& tree, const st
   ShakerParameters parameters;
   ParameterReader reader(tree, "");
   std::vector<std::string> signal_faults;
-  readNumber(reader, "sample_rate", false, highest_rate, " (Hz)", parameters.sample_rate);
+  parameters.sample_rate = reader.positive("sample_rate", parameters.sample_rate, highest_rate, " (Hz)");
   if (const auto signal = reader.map("signal"))
   {
     parameters.signal = readSignal(*signal, parameters.sample_rate, signal_faults);
@@ -206,20 +184,21 @@ ShakerParameters parseShakerParameters(const XmlRpc::XmlRpcValue& tree, const st
     reader.reject("block_rate", "a number from " + config::formatNumber(least) + " to " + config::formatNumber(most) +
                                     ", the sample rate (Hz)");
   }
-  readNumber(reader, "speed", true, highest_speed, "", parameters.speed);
-  readCount(reader, "max_blocks_ahead", most_blocks, parameters.max_blocks_ahead);
+  parameters.speed = reader.nonNegative("speed", parameters.speed, highest_speed, "");
+  parameters.max_blocks_ahead = reader.count("max_blocks_ahead", parameters.max_blocks_ahead, most_blocks);
   if (parameters.speed == 0.0 && parameters.max_blocks_ahead == 0)
   {
     reader.reject("max_blocks_ahead", "at least 1 where speed is 0");
   }
-  readCount(reader, "wait_for_subscribers", most_subscribers, parameters.wait_for_subscribers);
+  parameters.wait_for_subscribers =
+      reader.count("wait_for_subscribers", parameters.wait_for_subscribers, most_subscribers);
   parameters.recorder = reader.text("recorder", "");
   parameters.recorded_topics =
       reader.texts("recorded_topics", {"base_excitation", "gap", "contact_force", "impact", "model_info"});
-  readNumber(reader, "timeout", true, longest_wait, " (s)", parameters.timeout);
-  readNumber(reader, "linger", true, longest_wait, " (s)", parameters.linger);
-  readNumber(reader, "progress_period", true, longest_wait, " (s)", parameters.progress_period);
-  readCount(reader, "queue_size", most_blocks, parameters.queue_size);
+  parameters.timeout = reader.nonNegative("timeout", parameters.timeout, longest_wait, " (s)");
+  parameters.linger = reader.nonNegative("linger", parameters.linger, longest_wait, " (s)");
+  parameters.progress_period = reader.nonNegative("progress_period", parameters.progress_period, longest_wait, " (s)");
+  parameters.queue_size = reader.count("queue_size", parameters.queue_size, most_blocks);
   reader.rejectUnknown();
 
   std::vector<std::string> faults = reader.faults();

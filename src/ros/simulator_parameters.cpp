@@ -1,13 +1,11 @@
 #include "vibro_impact/ros/simulator_parameters.h"
 
-#include <limits>
-#include <optional>
-#include <set>
-#include <vector>
+#include <cstdint>
 
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/config/number.h"
+#include "vibro_impact/ros/parameter_reader.h"
 
 namespace vibro_impact::graph
 {
@@ -15,22 +13,11 @@ namespace
 {
 using XmlRpc::XmlRpcValue;
 
-/// Interval that a number must lie in; open at its lower end if `above`.
-struct Range
-{
-  bool above;
-  double least;
-  double greatest;
-
-  bool holds(double value) const
-  {
-    return (above ? value > least : value >= least) && value <= greatest;
-  }
-  std::string text() const
-  {
-    return (above ? "(" : "[") + config::formatNumber(least) + ", " + config::formatNumber(greatest) + "]";
-  }
-};
+constexpr double highest_acceleration = 1.0e9;
+constexpr double longest_time = 60.0;
+constexpr double longest_wait = 3600.0;
+constexpr double highest_mirror_rate = 1.0e4;
+constexpr std::uint32_t longest_queue = 1000000;
 
 std::string quoted(const std::string& text)
 {
@@ -63,134 +50,30 @@ std::string decimal(double value)
   return text.find_first_not_of("+-0123456789") == std::string::npos ? text + ".0" : text;
 }
 
-std::optional<double> number(const XmlRpcValue& value)
-{
-  switch (value.getType())
-  {
-    case XmlRpcValue::TypeInt:
-      return static_cast<const int&>(value);
-    case XmlRpcValue::TypeDouble:
-      return static_cast<const double&>(value);
-    case XmlRpcValue::TypeString:
-      return config::parseNumber(static_cast<const std::string&>(value));
-    default:
-      return std::nullopt;
-  }
-}
-
-/// Takes the parameters out of a tree one by one; what remains is unknown.
-class Reader
-{
-public:
-  explicit Reader(const XmlRpcValue& tree)
-  {
-    if (tree.getType() == XmlRpcValue::TypeStruct)
-    {
-      tree_ = tree;
-    }
-    for (const auto& entry : tree_)
-    {
-      unknown_.insert(entry.first);
-    }
-  }
-
-  void read(const char* key, const Range& range, const char* unit, double& value)
-  {
-    known_.push_back(key);
-    if (unknown_.erase(key) == 0)
-    {
-      return;
-    }
-    const XmlRpcValue& found = tree_[key];
-    const std::optional<double> given = number(found);
-    if (!given || !range.holds(*given))
-    {
-      reject(key, found, "a number in " + range.text() + unit);
-      return;
-    }
-    value = *given;
-  }
-
-  void read(const char* key, const Range& range, std::uint32_t& value)
-  {
-    known_.push_back(key);
-    if (unknown_.erase(key) == 0)
-    {
-      return;
-    }
-    const XmlRpcValue& found = tree_[key];
-    const std::optional<double> given = number(found);
-    if (!given || found.getType() == XmlRpcValue::TypeDouble || !range.holds(*given) ||
-        *given != static_cast<double>(static_cast<std::uint32_t>(*given)))
-    {
-      reject(key, found, "a whole number in " + range.text());
-      return;
-    }
-    value = static_cast<std::uint32_t>(*given);
-  }
-
-  /// Those of the model, for which the configuration's own loader answers.
-  XmlRpcValue take(const std::vector<const char*>& keys)
-  {
-    XmlRpcValue result;
-    result.begin();  // makes it a map, even if it stays empty
-    for (const char* key : keys)
-    {
-      known_.push_back(key);
-      if (unknown_.erase(key) != 0)
-      {
-        result[key] = tree_[key];
-      }
-    }
-    return result;
-  }
-
-  std::vector<std::string> faults() const
-  {
-    std::vector<std::string> faults = faults_;
-    for (const std::string& key : unknown_)
-    {
-      std::string names;
-      for (const char* name : known_)
-      {
-        names += (names.empty() ? "" : ", ") + std::string(name);
-      }
-      faults.push_back(quoted(key) + " is unknown: must be one of " + names);
-    }
-    return faults;
-  }
-
-private:
-  void reject(const char* key, const XmlRpcValue& value, const std::string& allowed)
-  {
-    faults_.push_back(std::string(key) + " = " + toYaml(value) + ": must be " + allowed);
-  }
-
-  XmlRpcValue tree_;
-  std::set<std::string> unknown_;
-  std::vector<const char*> known_;
-  std::vector<std::string> faults_;
-};
 }  // namespace
 
 SimulatorParameters parseSimulatorParameters(const XmlRpcValue& tree, const std::string& name)
 {
   SimulatorParameters parameters;
-  Reader reader(tree);
-  reader.read("max_acceleration", {true, 0.0, 1.0e9}, " m/s^2", parameters.limits.max_acceleration);
-  reader.read("max_bridged_gap", {false, 0.0, 60.0}, " s", parameters.limits.max_bridged_gap);
-  reader.read("max_step_back", {false, 0.0, 60.0}, " s", parameters.limits.max_step_back);
-  reader.read("max_stamp_jitter", {true, 0.0, 60.0}, " s", parameters.limits.max_stamp_jitter);
-  reader.read("mirror_rate", {true, 0.0, 1.0e4}, " Hz", parameters.mirror_rate);
-  reader.read("queue_size", {false, 0.0, 1.0e6}, parameters.queue_size);
-  reader.read("max_input_age", {true, 0.0, 3600.0}, " s", parameters.max_input_age);
-  reader.read("diagnostic_period", {true, 0.0, 3600.0}, " s", parameters.diagnostic_period);
+  StreamLimits& limits = parameters.limits;
+  ParameterReader reader(tree, "");
   const XmlRpcValue model = reader.take({"beam1", "beam2", "contact", "damping", "basis"});
+  limits.max_acceleration =
+      reader.positive("max_acceleration", limits.max_acceleration, highest_acceleration, " (m/s^2)");
+  limits.max_bridged_gap = reader.nonNegative("max_bridged_gap", limits.max_bridged_gap, longest_time, " (s)");
+  limits.max_step_back = reader.nonNegative("max_step_back", limits.max_step_back, longest_time, " (s)");
+  limits.max_stamp_jitter = reader.positive("max_stamp_jitter", limits.max_stamp_jitter, longest_time, " (s)");
+  parameters.mirror_rate = reader.positive("mirror_rate", parameters.mirror_rate, highest_mirror_rate, " (Hz)");
+  parameters.queue_size = reader.count("queue_size", parameters.queue_size, longest_queue);
+  parameters.max_input_age = reader.positive("max_input_age", parameters.max_input_age, longest_wait, " (s)");
+  parameters.diagnostic_period =
+      reader.positive("diagnostic_period", parameters.diagnostic_period, longest_wait, " (s)");
+  reader.rejectUnknown();
 
   std::string message;
-  for (const std::string& fault : reader.faults())
+  if (!reader.faults().empty())
   {
-    message += (message.empty() ? "" : "\n") + name + ": " + fault;
+    message = config::Error(name, reader.faults()).what();
   }
   try
   {

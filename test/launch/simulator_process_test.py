@@ -111,7 +111,7 @@ class SimulatorProcessTest(unittest.TestCase):
         parameters["mirorr_rate"] = 50.0
         self.expect_failure(parameters, [
             "beam1.length = -0.5", "beam2.density", "heavy", "damping.free", "stifness", "modes_free",
-            "mirror_rate = -5.0", "max_acceleration = \"plenty\"", "\"mirorr_rate\" is unknown"])
+            "mirror_rate = -5", "max_acceleration = \"plenty\"", "\"mirorr_rate\" is unknown: did you mean mirror_rate?"])
 
     def test_missing_configuration_ends_it(self):
         self.expect_failure({}, ["beam1 is missing", "beam2 is missing", "contact is missing", "damping is missing"])

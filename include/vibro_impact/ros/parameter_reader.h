@@ -11,9 +11,6 @@ namespace vibro_impact::graph
 {
 /// Takes the entries out of one map of the parameter server and remembers every fault. A text that is wholly a number
 /// counts as one.
-///
-/// A number that is missing or mistyped becomes one that is out of every range, so that the caller's check of ranges
-/// rejects it: one place knows what is allowed.
 class ParameterReader
 {
 public:
@@ -22,11 +19,25 @@ public:
 
   bool has(const std::string& key) const;
 
+  // Numbers whose range the caller checks. One of another type becomes one that is out of every range, so that this
+  // check rejects it.
+
   /// The number `key`; NaN if it is none, `missing` if it is not there.
   double number(const std::string& key, double missing);
 
   /// The whole number `key`; -1 if it is none, `missing` if it is not there.
   std::int64_t integer(const std::string& key, std::int64_t missing);
+
+  // Numbers in a range, rejected if they are not; `unit` (such as " (s)", or empty) is for the message.
+
+  /// The number `key`, above 0 and at most `most`, or `missing` if it is not there.
+  double positive(const std::string& key, double missing, double most, const std::string& unit);
+
+  /// The number `key`, from 0 to `most`; the same.
+  double nonNegative(const std::string& key, double missing, double most, const std::string& unit);
+
+  /// The whole number `key`, from 0 to `most`; the same.
+  std::uint32_t count(const std::string& key, std::uint32_t missing, std::uint32_t most);
 
   /// The text `key`; rejects another type, and gives `missing` then and if it is not there.
   std::string text(const std::string& key, const std::string& missing);
@@ -36,6 +47,9 @@ public:
 
   /// The map `key`; rejects another type and its absence.
   std::optional<XmlRpc::XmlRpcValue> map(const std::string& key);
+
+  /// A map of those of the keys that are there, for a loader of their own.
+  XmlRpc::XmlRpcValue take(const std::vector<std::string>& keys);
 
   /// Says how `key` stands on the server and what it must be.
   void reject(const std::string& key, const std::string& allowed);
