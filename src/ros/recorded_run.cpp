@@ -254,9 +254,7 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
                           else if (topic == topics.contact_force)
                           {
                             const auto block = messageOf<ContactForce>(instance);
-                            const bool contact = std::any_of(block->force.begin(), block->force.end(),
-                                                             [](double force) { return force > 0.0; });
-                            sink.onContactForce(headOf(*block, block->force.size()), contact);
+                            sink.onContactForce(headOf(*block, block->force.size()), block->force);
                           }
                           else if (topic == topics.impact)
                           {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -20,6 +21,9 @@ std::string text(const Parts&... parts)
   (stream << ... << parts);
   return stream.str();
 }
+
+// Numbers of samples up to here are exact in a double, by which samples are dated.
+constexpr std::uint64_t last_seq = std::uint64_t{1} << 53;
 
 bool startsBefore(const BlockHead& block, std::uint64_t seq)
 {
@@ -59,9 +63,15 @@ RecordingCheck::RecordingCheck(RecordedTopics topics) : topics_(std::move(topics
 bool RecordingCheck::takeExcitation(const BlockHead& block)
 {
   const std::string place = text("topic ", topics_.base_excitation, ", seq ", block.seq, ": ");
-  if (!std::isfinite(block.sample_period) || block.sample_period <= 0.0)
+  // Written so that NaN fails, too.
+  if (!(block.sample_period >= StreamRules::min_sample_period && block.sample_period <= StreamRules::max_sample_period))
   {
-    throw config::Error(text(place, "sample_period is ", block.sample_period, " s, must be > 0"));
+    throw config::Error(text(place, "sample_period is ", block.sample_period, " s, must be in [",
+                             StreamRules::min_sample_period, ", ", StreamRules::max_sample_period, "] s"));
+  }
+  if (block.seq > last_seq || block.samples > last_seq - block.seq)
+  {
+    throw config::Error(text(place, "the number is too great, must be at most ", last_seq));
   }
   if (excitation_.empty())
   {
@@ -87,7 +97,7 @@ bool RecordingCheck::takeExcitation(const BlockHead& block)
     throw config::Error(
         text(place, "sample_period changes from ", before.sample_period, " s to ", block.sample_period, " s", advice));
   }
-  const double elapsed = (block.stamp - before.stamp).toSec();
+  const double elapsed = block.stamp.toSec() - before.stamp.toSec();  // further than a ros::Duration reaches
   const double counted = static_cast<double>(block.seq - before.seq) * block.sample_period;
   if (std::abs(elapsed - counted) > StreamLimits{}.max_stamp_jitter)
   {
@@ -115,14 +125,41 @@ void RecordingCheck::takeGap(const BlockHead& block)
   gaps_.push_back(block);
 }
 
-void RecordingCheck::takeContactForce(const BlockHead& block, bool contact)
+void RecordingCheck::takeContactForce(const BlockHead& block, const std::vector<double>& force)
 {
+  bool in_contact = contact_goes_on_ && !forces_.empty() && forces_.back().end() == block.seq;
+  for (std::size_t i = 0; i < force.size(); ++i)
+  {
+    const bool was_in_contact = in_contact;
+    in_contact = force[i] != 0.0;  // a truncated basis pulls, too
+    contact_ = contact_ || in_contact;
+    if (was_in_contact && !in_contact)
+    {
+      last_separated_ = std::max(last_separated_, block.seq + i);
+    }
+  }
+  contact_goes_on_ = in_contact;
   forces_.push_back(block);
-  contact_ = contact_ || contact;
 }
 
 bool RecordingCheck::takeImpact(const Impact& impact)
 {
+  const std::pair<const char*, double> values[] = {
+      {"offset", impact.offset},
+      {"duration", impact.duration},
+      {"impulse", impact.impulse},
+      {"peak_force", impact.peak_force},
+      {"approach_speed", impact.approach_speed},
+      {"separation_speed", impact.separation_speed},
+  };
+  for (const auto& [field, value] : values)
+  {
+    if (!std::isfinite(value))
+    {
+      throw config::Error(
+          text("topic ", topics_.impact, ", number ", impact.number, ": ", field, " is ", value, ", must be finite"));
+    }
+  }
   if (last_impact_ && impact.number == last_impact_->number && impact.seq == last_impact_->seq &&
       impact.offset == last_impact_->offset)
   {
@@ -193,6 +230,55 @@ void RecordingCheck::compare(std::vector<BlockHead> answers, const std::string& 
   flush();
 }
 
+// An answer proves that there was a question.
+void RecordingCheck::findUnasked(std::vector<Loss>& losses) const
+{
+  std::map<std::uint64_t, std::uint64_t> answered;  // first sample and the one after the last
+  for (const std::vector<BlockHead>* answers : {&gaps_, &forces_})
+  {
+    for (const BlockHead& answer : *answers)
+    {
+      // Between the first and the last block the numbers of these have shown what is missing.
+      if (answer.seq < excitation_.front().seq || answer.seq >= excitation_.back().end())
+      {
+        answered.emplace(answer.seq, answer.end());
+      }
+    }
+  }
+  for (auto block = answered.begin(); block != answered.end();)
+  {
+    const std::uint64_t first = block->first;
+    std::uint64_t last = first;
+    std::uint64_t blocks = 0;
+    for (; block != answered.end() && (blocks == 0 || block->first == last); ++block)
+    {
+      last = block->second;
+      ++blocks;
+    }
+    losses.push_back({first, last,
+                      text("topic ", topics_.base_excitation, ": seq ", first, " to ", last - 1, " (", blocks,
+                           blocks == 1 ? " block" : " blocks", ", answered) is missing")});
+  }
+}
+
+// A contact that has ended was an impact.
+void RecordingCheck::findMissingEnd(std::vector<Loss>& losses) const
+{
+  const double end = last_impact_
+                         ? static_cast<double>(last_impact_->seq) +
+                               (last_impact_->offset + last_impact_->duration) / excitation_.front().sample_period
+                         : 0.0;
+  // The release lies between a sample in contact and this one; that of an impact cut short, on the former.
+  constexpr double apart = 1.5;
+  if (static_cast<double>(last_separated_) > end + apart)
+  {
+    const std::string which = last_impact_ ? text("what follows number ", last_impact_->number) : "every impact";
+    losses.push_back(
+        {last_impact_ ? last_impact_->seq : 0, last_separated_ + 1,
+         text("topic ", topics_.impact, ": ", which, " (contact up to seq ", last_separated_ - 1, ") is missing")});
+  }
+}
+
 RecordingSummary RecordingCheck::finish()
 {
   if (excitation_.empty())
@@ -223,6 +309,8 @@ RecordingSummary RecordingCheck::finish()
   summary.losses = losses_;
   compare(gaps_, topics_.gap, summary.losses);
   compare(forces_, topics_.contact_force, summary.losses);
+  findUnasked(summary.losses);
+  findMissingEnd(summary.losses);
   std::stable_sort(summary.losses.begin(), summary.losses.end(),
                    [](const Loss& a, const Loss& b) { return a.first < b.first; });
   return summary;

@@ -58,9 +58,9 @@ public:
     check_.takeGap(block);
   }
 
-  void onContactForce(const BlockHead& block, bool contact) override
+  void onContactForce(const BlockHead& block, const std::vector<double>& force) override
   {
-    check_.takeContactForce(block, contact);
+    check_.takeContactForce(block, force);
   }
 
   void onImpact(const Impact& impact) override

@@ -145,6 +145,10 @@ void report(const graph::Extraction& extraction, const std::string& out)
   const graph::RecordingSummary& recording = extraction.recording;
   std::cout << recording.blocks << " blocks, " << recording.samples << " samples, "
             << (recording.losses.empty() ? "none lost" : "not complete") << "; " << recording.impacts << " impacts\n";
+  if (recording.first > 0)
+  {
+    std::cout << "the recording begins in the middle of the stream, at seq " << recording.first << "\n";
+  }
   for (std::size_t i = 0; i < std::min(shown, recording.losses.size()); ++i)
   {
     std::cout << "lost: " << recording.losses[i].reason << "\n";

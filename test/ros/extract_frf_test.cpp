@@ -289,6 +289,31 @@ TEST_P(ExtractFrfWithLoss, leavesTheStepOutIfAllowed)
 INSTANTIATE_TEST_SUITE_P(OneBlock, ExtractFrfWithLoss,
                          testing::Values("base_excitation", "gap", "contact_force", "impact"));
 
+TEST_F(ExtractFrf, lossesAtTheEndsAreSeen)
+{
+  const SyntheticRun whole = Sweep().run();
+  SyntheticRun run = whole;
+  run.excitations.erase(run.excitations.begin());
+  expectRefusal(extract(run), 1, "topic /base_excitation: seq 0 to 399 (1 block, answered) is missing");
+  run = whole;
+  run.excitations.pop_back();
+  expectRefusal(extract(run), 1, "(1 block, answered) is missing");
+  run = whole;
+  run.impacts.resize(run.impacts.size() - 3);
+  expectRefusal(extract(run), 1, "topic /impact: what follows number ");
+}
+
+TEST_F(ExtractFrf, aRecordingFromTheMiddleOfTheStreamSaysSo)
+{
+  Sweep sweep;
+  SyntheticRun run = sweep.run();
+  run.infos.front().header.stamp = run.excitations.back().header.stamp;
+  run.write(path("run.bag"), 0.25, 1.0);
+  const Outcome outcome = this->run(path("run.bag") + " --out " + path("results"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("the recording begins in the middle of the stream, at seq "));
+}
+
 TEST_F(ExtractFrf, losesEverything)
 {
   SyntheticRun run = Sweep().run();

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "vibro_impact/config/error.h"
 
@@ -15,6 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr double period = 1.0e-3;
+const std::vector<double> none(100, 0.0);
 
 BlockHead block(std::uint64_t seq, std::uint64_t samples = 100)
 {
@@ -44,12 +48,18 @@ protected:
     }
   }
 
-  void takeAnswers()
+  // Of contact over the samples [from, to).
+  void takeAnswers(std::uint64_t from = 0, std::uint64_t to = 0)
   {
     for (std::uint64_t seq = 0; seq < 1000; seq += 100)
     {
+      std::vector<double> force(100, 0.0);
+      for (std::uint64_t i = std::max(from, seq); i < std::min(to, seq + 100); ++i)
+      {
+        force[i - seq] = 2.5;
+      }
       check_.takeGap(block(seq));
-      check_.takeContactForce(block(seq), true);
+      check_.takeContactForce(block(seq), force);
     }
   }
 
@@ -108,12 +118,29 @@ TEST_F(Check, missingExcitationIsALoss)
   expectLoss(400, 500, "topic /base_excitation: seq 400 to 499 (100 samples) is missing");
 }
 
+TEST_F(Check, answersWithoutTheirExcitationAreALoss)
+{
+  for (std::uint64_t seq = 200; seq < 900; seq += 100)
+  {
+    check_.takeExcitation(block(seq));
+  }
+  takeAnswers();
+  const auto losses = check_.finish().losses;
+  ASSERT_EQ(losses.size(), 2u);
+  EXPECT_EQ(losses[0].first, 0u);
+  EXPECT_EQ(losses[0].last, 200u);
+  EXPECT_EQ(losses[0].reason, "topic /base_excitation: seq 0 to 199 (2 blocks, answered) is missing");
+  EXPECT_EQ(losses[1].first, 900u);
+  EXPECT_EQ(losses[1].last, 1000u);
+  EXPECT_EQ(losses[1].reason, "topic /base_excitation: seq 900 to 999 (1 block, answered) is missing");
+}
+
 TEST_F(Check, missingAnswersInARowAreOneLoss)
 {
   takeExcitation();
   for (std::uint64_t seq = 0; seq < 1000; seq += 100)
   {
-    check_.takeContactForce(block(seq), false);
+    check_.takeContactForce(block(seq), none);
     if (seq != 300 && seq != 400)
     {
       check_.takeGap(block(seq));
@@ -130,7 +157,7 @@ TEST_F(Check, missingForceIsALossAtTheEndToo)
     check_.takeGap(block(seq));
     if (seq != 900)
     {
-      check_.takeContactForce(block(seq), false);
+      check_.takeContactForce(block(seq), none);
     }
   }
   expectLoss(900, 1000, "topic /contact_force: seq 900 to 999 (1 block) is missing");
@@ -147,7 +174,7 @@ TEST_F(Check, answersMustHaveSamplesPeriodAndStampOfTheBlock)
     gap.sample_period = seq == 200 ? 2.0 * period : gap.sample_period;
     force.stamp += ros::Duration(seq == 300 ? 1.0e-9 : 0.0);
     check_.takeGap(gap);
-    check_.takeContactForce(force, false);
+    check_.takeContactForce(force, none);
   }
   const auto losses = check_.finish().losses;
   ASSERT_EQ(losses.size(), 3u);
@@ -173,13 +200,43 @@ TEST_F(Check, firstImpactIsNumberZeroOfARunRecordedFromItsBeginning)
   expectLoss(0, 11, "topic /impact: number 0 to 0 (1 impact before seq 10) is missing");
 }
 
+TEST_F(Check, contactThatHasEndedIsAnImpact)
+{
+  takeExcitation();
+  takeAnswers(580, 800);  // over several blocks, up to the end of one
+  check_.takeImpact(impact(0, 10));
+  check_.takeImpact(impact(1, 50));
+  expectLoss(50, 801, "topic /impact: what follows number 1 (contact up to seq 799) is missing");
+
+  Impact last = impact(2, 579);
+  last.offset = 0.5 * period;
+  last.duration = 220.0 * period;
+  check_.takeImpact(last);
+  EXPECT_TRUE(check_.finish().losses.empty());
+}
+
+TEST_F(Check, contactWithoutAnyImpactIsALoss)
+{
+  takeExcitation();
+  takeAnswers(580, 590);
+  expectLoss(0, 591, "topic /impact: every impact (contact up to seq 589) is missing");
+}
+
+TEST_F(Check, contactThatHasNotEndedIsNoImpactYet)
+{
+  takeExcitation();
+  takeAnswers(980, 1000);
+  check_.takeImpact(impact(0, 10));
+  EXPECT_TRUE(check_.finish().losses.empty());
+}
+
 TEST_F(Check, recordingMayBeginInTheMiddleOfTheStream)
 {
   for (const std::uint64_t seq : {500, 600})
   {
     check_.takeExcitation(block(seq));
     check_.takeGap(block(seq));
-    check_.takeContactForce(block(seq), true);
+    check_.takeContactForce(block(seq), none);
   }
   check_.takeImpact(impact(17, 510));
   const RecordingSummary summary = check_.finish();
@@ -237,6 +294,8 @@ TEST_F(Check, refusesAJumpInTime)
   next = block(1100);
   next.stamp += ros::Duration(5.0);
   expectError([&] { check_.takeExcitation(next); }, "header.stamp jumps");
+  next.stamp = ros::Time(4.0e9);
+  expectError([&] { check_.takeExcitation(next); }, "header.stamp jumps");
 }
 
 TEST_F(Check, refusesAPeriodThatIsNone)
@@ -245,8 +304,26 @@ TEST_F(Check, refusesAPeriodThatIsNone)
   {
     BlockHead first = block(0);
     first.sample_period = bad;
-    expectError([&] { check_.takeExcitation(first); }, "must be > 0");
+    expectError([&] { check_.takeExcitation(first); }, "must be in [1e-09, 1000] s");
   }
+}
+
+TEST_F(Check, refusesANumberThatIsTooGreat)
+{
+  BlockHead late = block(0);
+  late.seq = (std::uint64_t{1} << 53) - 99;
+  expectError([&] { check_.takeExcitation(late); }, "seq 9007199254740893: the number is too great");
+  late.seq = ~std::uint64_t{0};
+  expectError([&] { check_.takeExcitation(late); }, "must be at most 9007199254740992");
+  late.seq = (std::uint64_t{1} << 53) - 100;
+  EXPECT_TRUE(check_.takeExcitation(late));
+}
+
+TEST_F(Check, refusesAnImpactThatIsNotFinite)
+{
+  Impact bad = impact(3, 10);
+  bad.impulse = std::nan("");
+  expectError([&] { check_.takeImpact(bad); }, "topic /impact, number 3: impulse is nan, must be finite");
 }
 
 TEST_F(Check, refusesAStreamWithoutBlocks)
@@ -259,9 +336,9 @@ TEST(CheckWithoutImpacts, isRefusedIfThereIsContact)
   RecordingCheck silent({"/base_excitation", "/gap", "/contact_force", "", "/model_info"});
   silent.takeExcitation(block(0));
   silent.takeGap(block(0));
-  silent.takeContactForce(block(0), false);
+  silent.takeContactForce(block(0), none);
   EXPECT_TRUE(silent.finish().losses.empty());
-  silent.takeContactForce(block(0), true);
+  silent.takeContactForce(block(0), {0.0, 1.0});
   EXPECT_THROW(silent.finish(), config::Error);
 }
 }  // namespace

@@ -34,7 +34,8 @@ public:
   virtual ~RecordingSink() = default;
   virtual void onExcitation(const BaseExcitation& block) = 0;
   virtual void onGap(const BlockHead& block) = 0;
-  virtual void onContactForce(const BlockHead& block, bool contact) = 0;  ///< `contact`: there is a force in the block
+  virtual void onContactForce(const BlockHead& block,
+                              const std::vector<double>& force) = 0;  ///< `force`: its samples, N
   virtual void onImpact(const Impact& impact) = 0;
   virtual void onModelInfo(const ModelInfo& info) = 0;
 };

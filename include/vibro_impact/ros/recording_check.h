@@ -33,23 +33,23 @@ struct RecordingSummary
 };
 
 /// Proves that nothing of a run is missing in its recording, or says what is: the excitation's samples are numbered
-/// without a gap, every block of it was answered by a gap and a contact force of its number, and impacts are numbered
-/// without a gap.
+/// without a gap, every block of it was answered by a gap and a contact force of its number, there is no answer without
+/// its block, and impacts are numbered without a gap up to the last contact that the force shows to have ended.
 class RecordingCheck
 {
 public:
   explicit RecordingCheck(RecordedTopics topics);
 
   /// The next block of excitation as recorded. False: a repetition, to be left. Throws config::Error where the stream
-  /// restarts, jumps in time (StreamLimits::max_stamp_jitter), changes its period or has none: the samples before and
-  /// after have no common time axis.
+  /// restarts, jumps in time (StreamLimits::max_stamp_jitter) or changes its period, as the samples before and after
+  /// have no common time axis, and where the period or the number is out of range.
   bool takeExcitation(const BlockHead& block);
   /// The block taken last cannot be used, as `reason` says.
   void refuseExcitation(const BlockHead& block, const std::string& reason);
 
   void takeGap(const BlockHead& block);
-  void takeContactForce(const BlockHead& block, bool contact);
-  /// False: a repetition, to be left.
+  void takeContactForce(const BlockHead& block, const std::vector<double>& force);
+  /// False: a repetition, to be left. Throws config::Error for an impact with a value that is not finite.
   bool takeImpact(const Impact& impact);
 
   /// Compares everything taken. Throws config::Error if there is no excitation, or contact but no topic of impacts.
@@ -58,12 +58,16 @@ public:
 private:
   void expectImpact(const Impact& impact, std::uint64_t number, std::uint64_t since);
   void compare(std::vector<BlockHead> answers, const std::string& topic, std::vector<Loss>& losses) const;
+  void findUnasked(std::vector<Loss>& losses) const;
+  void findMissingEnd(std::vector<Loss>& losses) const;
 
   RecordedTopics topics_;
   std::vector<BlockHead> excitation_;
   std::vector<BlockHead> gaps_;
   std::vector<BlockHead> forces_;
-  bool contact_ = false;
+  bool contact_ = false;              // the force shows one
+  bool contact_goes_on_ = false;      // over the end of the last block of force
+  std::uint64_t last_separated_ = 0;  // sample without contact that follows one in contact, the last one
   std::vector<Loss> losses_;
   std::uint64_t repeated_ = 0;
   std::uint64_t impacts_ = 0;
