@@ -1,10 +1,11 @@
-#include <csignal>
+#include <atomic>
 #include <cstdlib>
 #include <exception>
 
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include "vibro_impact/ros/end_request.h"
 #include "vibro_impact/ros/simulator.h"
 
 namespace
@@ -13,27 +14,19 @@ namespace
 constexpr double longest_drain = 5.0;
 /// roscpp sends in the background and drops at its end what it has not sent yet, s.
 constexpr double linger = 0.3;
-
-volatile std::sig_atomic_t stop = 0;
-
-void onSignal(int /*signal*/)
-{
-  stop = 1;
-}
 }  // namespace
 
 int main(int argc, char** argv)
 {
   ros::init(argc, argv, "simulator", ros::init_options::NoSigintHandler);
+  const std::atomic<bool>& stop = vibro_impact::graph::catchEndRequests();
   // Lives as long as there may be something to log: roscpp and its log end with the last handle.
   const ros::NodeHandle node;
   try
   {
     vibro_impact::graph::Simulator simulator(node, ros::NodeHandle("~"));
-    std::signal(SIGINT, onSignal);
-    std::signal(SIGTERM, onSignal);
     ros::CallbackQueue& queue = *ros::getGlobalCallbackQueue();
-    while (stop == 0 && ros::ok())
+    while (!stop && ros::ok())
     {
       queue.callAvailable(ros::WallDuration(0.1));
     }

@@ -61,7 +61,7 @@ Stamp sampleTime(Stamp start, std::uint64_t seq, double sample_rate)
   return start + static_cast<Stamp>(seconds.whole) * 1000000000 + std::llround(1.0e9 * seconds.fraction);
 }
 
-Shaker::Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const volatile std::sig_atomic_t& stop)
+Shaker::Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::atomic<bool>& stop)
     : stop_(stop),
       parameters_(readParameters(private_node)),
       signal_(core::makeDriveSignal(parameters_.signal, parameters_.sample_rate)),
@@ -110,7 +110,7 @@ void Shaker::run()
 
 bool Shaker::goesOn() const
 {
-  return stop_ == 0 && ros::ok();
+  return !stop_ && ros::ok();
 }
 
 void Shaker::pause(double seconds) const

@@ -193,19 +193,23 @@ class ShakerProcessTest(unittest.TestCase):
         self.expect_end(process, 1)
         self.assertIn("in vain for " + self.namespace + "/record to receive", self.printed())
 
-    def expect_clean_end(self, number):
+    def expect_clean_end(self, ask):
         process = self.start(sine(signal={"type": "sine", "acceleration": 1.0, "frequency": 1.0, "duration": 1000.0}))
         blocks = self.subscribe()
         self.assertTrue(wait_until(lambda: blocks))
-        process.send_signal(number)
+        ask(process)
         self.expect_end(process, 0)
         self.assertIn("of 10000000 samples", self.printed())
 
     def test_interrupt_ends_it_cleanly(self):
-        self.expect_clean_end(signal.SIGINT)
+        self.expect_clean_end(lambda process: process.send_signal(signal.SIGINT))
 
     def test_termination_ends_it_cleanly(self):
-        self.expect_clean_end(signal.SIGTERM)
+        self.expect_clean_end(lambda process: process.send_signal(signal.SIGTERM))
+
+    def test_kill_over_the_graph_ends_it_cleanly(self):
+        self.expect_clean_end(lambda process: subprocess.check_call(
+            ["rosnode", "kill", self.namespace + "/shaker"], stdout=subprocess.DEVNULL))
 
     def test_interrupt_while_it_waits_ends_it_cleanly(self):
         process = self.start(sine(wait_for_subscribers=1))

@@ -155,7 +155,7 @@ class SimulatorProcessTest(unittest.TestCase):
         self.assertIn("/rostopic_", complaints()[0])
         self.assertTrue(all(gap.seq != 7 for gap in gaps), "a block of the second publisher was taken")
 
-    def expect_clean_end(self, number):
+    def expect_clean_end(self, ask):
         process = self.start(configuration())
         publisher = self.advertise()
         gaps, gap_subscriber = self.subscribe(self.namespace + "/gap", Gap)
@@ -167,15 +167,20 @@ class SimulatorProcessTest(unittest.TestCase):
         publisher.publish(block(0, [10.0 * (1.0 - math.exp(-0.01 * i)) for i in range(1000)]))
         self.assertTrue(wait_until(lambda: gaps))
         self.assertLess(gaps[0].gap[-1], 0.0)
-        process.send_signal(number)
+        ask(process)
         self.assertEqual(process.wait(PATIENCE), 0, self.printed())
         self.assertTrue(wait_until(lambda: any(impact.cut_short for impact in impacts)))
 
     def test_interrupt_publishes_the_open_impact_and_ends_cleanly(self):
-        self.expect_clean_end(signal.SIGINT)
+        self.expect_clean_end(lambda process: process.send_signal(signal.SIGINT))
 
     def test_termination_publishes_the_open_impact_and_ends_cleanly(self):
-        self.expect_clean_end(signal.SIGTERM)
+        self.expect_clean_end(lambda process: process.send_signal(signal.SIGTERM))
+
+    def test_kill_over_the_graph_publishes_the_open_impact_and_ends_cleanly(self):
+        self.expect_clean_end(lambda process: subprocess.check_call(
+            ["rosnode", "kill", self.namespace + "/simulator"], stdout=subprocess.DEVNULL))
+        self.assertIn("asked to end: user request", self.printed())
 
 
 if __name__ == "__main__":

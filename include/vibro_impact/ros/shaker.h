@@ -1,7 +1,7 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -28,8 +28,8 @@ namespace vibro_impact::graph
 class Shaker
 {
 public:
-  /// Reads the private parameters, which throws config::Error, and advertises. A signal handler ends run() by `stop`.
-  Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const volatile std::sig_atomic_t& stop);
+  /// Reads the private parameters, which throws config::Error, and advertises. `stop` ends run().
+  Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::atomic<bool>& stop);
 
   /// Waits for whom it has been told to wait for, publishes the whole signal, waits until it has arrived. Throws
   /// std::runtime_error if another node is not there in time, leaves something out of its answers, or has lost
@@ -61,7 +61,7 @@ private:
   void checkRecording();
   std::uint64_t unanswered() const;
 
-  const volatile std::sig_atomic_t& stop_;
+  const std::atomic<bool>& stop_;
   ShakerParameters parameters_;
   std::unique_ptr<const core::DriveSignal> signal_;
   double reference_frequency_;
