@@ -79,8 +79,8 @@ void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& even
     if (!guard_.admit(publisher, excitation_subscriber_.getNumPublishers(), start.toSec()))
     {
       statistics_.countSecondPublisher(guard_.source(), publisher);
-      ROS_ERROR_THROTTLE(1.0, "two publishers on topic %s: %s and %s; blocks of the second are refused",
-                         excitation_subscriber_.getTopic().c_str(), guard_.source().c_str(), publisher.c_str());
+      ROS_ERROR_COND(publishers_.due(), "two publishers on topic %s: %s and %s; blocks of the second are refused",
+                     excitation_subscriber_.getTopic().c_str(), guard_.source().c_str(), publisher.c_str());
       return;
     }
     fromMessage(*event.getConstMessage(), excitation_);
@@ -91,7 +91,7 @@ void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& even
   }
   catch (const std::exception& error)
   {
-    ROS_ERROR_THROTTLE(1.0, "a block of %s was lost: %s", publisher.c_str(), error.what());
+    ROS_ERROR_COND(losses_.due(), "a block of %s was lost: %s", publisher.c_str(), error.what());
   }
 }
 
@@ -147,18 +147,18 @@ void Simulator::publishModelInfo(ros::NodeHandle& node)
   model_info_publisher_.publish(info);
 }
 
-void Simulator::log(const Verdict& verdict) const
+void Simulator::log(const Verdict& verdict)
 {
   switch (verdict.action)
   {
     case Verdict::Action::Refuse:
-      ROS_ERROR_THROTTLE(1.0, "block refused: %s", verdict.reason.c_str());
+      ROS_ERROR_COND(refusals_.due(), "block refused: %s", verdict.reason.c_str());
       break;
     case Verdict::Action::Bridge:
-      ROS_WARN_THROTTLE(1.0, "bridged by a straight line: %s", verdict.reason.c_str());
+      ROS_WARN_COND(bridges_.due(), "bridged by a straight line: %s", verdict.reason.c_str());
       break;
     case Verdict::Action::Restart:
-      ROS_WARN_THROTTLE(1.0, "restarted from rest: %s", verdict.reason.c_str());
+      ROS_WARN_COND(restarts_.due(), "restarted from rest: %s", verdict.reason.c_str());
       break;
     case Verdict::Action::Start:
     case Verdict::Action::Continue:

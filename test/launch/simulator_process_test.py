@@ -122,6 +122,15 @@ class SimulatorProcessTest(unittest.TestCase):
         text = "still waiting for data on topic " + self.namespace + "/base_excitation"
         self.assertTrue(wait_until(lambda: any(text in message.msg for message in log)))
 
+    def test_says_why_it_refuses_where_simulated_time_stands_still(self):
+        rospy.set_param("/use_sim_time", True)
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
+        self.start(configuration())
+        publisher = self.advertise()
+        self.assertTrue(wait_until(lambda: publisher.get_num_connections() == 1))
+        publisher.publish(block(0, [1.0, math.nan]))
+        self.assertTrue(wait_until(lambda: "block refused: acceleration[1] is nan m/s^2" in self.printed()))
+
     def test_two_publishers_are_both_named(self):
         parameters = configuration()
         parameters["diagnostic_period"] = 0.1

@@ -12,6 +12,7 @@
 #include <vibro_impact/Impact.h>
 
 #include "vibro_impact/ros/extremes.h"
+#include "vibro_impact/ros/log_throttle.h"
 #include "vibro_impact/ros/simulator_parameters.h"
 #include "vibro_impact/ros/simulator_statistics.h"
 #include "vibro_impact/ros/source_guard.h"
@@ -39,7 +40,7 @@ private:
 
   void publish(const StreamSimulation::Answer& answer);
   void publishModelInfo(ros::NodeHandle& node);
-  void log(const Verdict& verdict) const;
+  void log(const Verdict& verdict);
 
   SimulatorParameters parameters_;
   std::shared_ptr<const core::SwitchedModel> model_;
@@ -48,6 +49,11 @@ private:
   SourceGuard guard_;
   SimulatorStatistics statistics_;
   std::optional<ros::SteadyTime> last_input_;
+  LogThrottle refusals_;
+  LogThrottle bridges_;
+  LogThrottle restarts_;
+  LogThrottle publishers_;
+  LogThrottle losses_;
 
   // Buffers, so that a block allocates nothing once the largest has been seen.
   Samples excitation_;
