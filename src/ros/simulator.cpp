@@ -88,6 +88,9 @@ void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& even
     statistics_.count(answer, (ros::SteadyTime::now() - start).toSec());
     log(answer.verdict);
     publish(answer);
+    // A node that computes hears nothing; that is no silence of the publisher's.
+    last_input_ = ros::SteadyTime::now();
+    guard_.listenAgain(last_input_->toSec());
   }
   catch (const std::exception& error)
   {

@@ -131,6 +131,27 @@ class SimulatorProcessTest(unittest.TestCase):
         publisher.publish(block(0, [1.0, math.nan]))
         self.assertTrue(wait_until(lambda: "block refused: acceleration[1] is nan m/s^2" in self.printed()))
 
+    def test_input_is_not_stale_because_computing_took_long(self):
+        parameters = configuration()
+        parameters["diagnostic_period"] = 0.1
+        parameters["max_input_age"] = 0.3
+        self.start(parameters)
+        publisher = self.advertise()
+        diagnostics, subscriber = self.subscribe("/diagnostics", DiagnosticArray)
+        self.assertTrue(wait_until(
+            lambda: publisher.get_num_connections() == 1 and subscriber.get_num_connections() == 1))
+        # A quarter of an hour between two samples: thousands of vibrations, most of a second of computing.
+        message = block(0, [1.0e5 * (-1.0) ** i for i in range(12)])
+        message.sample_period = 1000.0
+        publisher.publish(message)
+
+        def accepted():
+            return [status for message in diagnostics for status in message.status
+                    for value in status.values if value.key == "Blocks accepted" and value.value == "1"]
+
+        self.assertTrue(wait_until(accepted))
+        self.assertEqual(accepted()[0].level, DiagnosticStatus.OK, accepted()[0].message)
+
     def test_two_publishers_are_both_named(self):
         parameters = configuration()
         parameters["diagnostic_period"] = 0.1

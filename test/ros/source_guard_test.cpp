@@ -42,4 +42,14 @@ TEST(SourceGuard, aSilentSourceIsReplaced)
   EXPECT_FALSE(guard.admit("/shaker", 2, 11.2));
 }
 
+TEST(SourceGuard, whoIsNotListenedToIsNotSilent)
+{
+  SourceGuard guard(1.0);
+  guard.admit("/shaker", 2, 10.0);
+  guard.listenAgain(12.5);
+  EXPECT_FALSE(guard.admit("/bag", 2, 12.6));
+  EXPECT_TRUE(guard.admit("/shaker", 2, 12.7));
+  EXPECT_EQ(guard.source(), "/shaker");
+}
+
 }  // namespace

@@ -20,6 +20,12 @@ public:
   /// publishers on the topic.
   bool admit(const std::string& publisher, std::uint32_t connected, double wall_time);
 
+  /// The block that passed has been dealt with by `wall_time`: until then nobody listened, so nobody was silent.
+  void listenAgain(double wall_time)
+  {
+    last_time_ = wall_time;
+  }
+
   /// Name of the publisher whose blocks pass; empty before the first.
   const std::string& source() const
   {
