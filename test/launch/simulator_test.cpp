@@ -173,20 +173,20 @@ private:
 class SimulatorTest : public testing::Test
 {
 protected:
-  static void SetUpTestSuite()
-  {
-    client_ = std::make_unique<Client>();
-    model_ = std::make_shared<core::SwitchedModel>(configuration());
-  }
-
   static void TearDownTestSuite()
   {
     client_.reset();
     model_.reset();
   }
 
+  /// One client and one model for all tests, made for the first: a failure in SetUpTestSuite() would only skip them.
   void SetUp() override
   {
+    if (!client_)
+    {
+      model_ = std::make_shared<core::SwitchedModel>(configuration());
+      client_ = std::make_unique<Client>();
+    }
     ASSERT_TRUE(client_->connect());
     anew();
   }
