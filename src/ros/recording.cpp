@@ -6,6 +6,7 @@
 #include <ros/master.h>
 #include <ros/network.h>
 #include <ros/this_node.h>
+#include <xmlrpcpp/XmlRpcClient.h>
 #include <xmlrpcpp/XmlRpcException.h>
 
 #include "vibro_impact/ros/process.h"
@@ -15,6 +16,9 @@ namespace vibro_impact::graph
 namespace
 {
 using XmlRpc::XmlRpcValue;
+
+// More than any node takes that is well, s.
+constexpr double longest_answer = 5.0;
 
 bool isOfThisMachine(const std::string& host)
 {
@@ -95,6 +99,27 @@ void addReceived(XmlRpcValue& bus_statistics, Delivery& delivery)
 }
 
 }  // namespace
+
+// Asks a node, and does not wait for ever where it hangs or its machine is gone.
+class Recording::Client : public XmlRpc::XmlRpcClient
+{
+public:
+  using XmlRpcClient::XmlRpcClient;
+
+  bool ask(const char* method, const XmlRpcValue& parameters, XmlRpcValue& answer)
+  {
+    if (!executeNonBlock(method, parameters))
+    {
+      return false;
+    }
+    _disp.work(longest_answer);
+    return executeCheckDone(answer) && !isFault();
+  }
+};
+
+Recording::~Recording() = default;
+Recording::Recording(Recording&&) noexcept = default;
+Recording& Recording::operator=(Recording&&) noexcept = default;
 
 Recording::Recording(std::vector<std::string> topics, std::string recorder)
     : topics_(std::move(topics)), recorder_(std::move(recorder))
@@ -180,7 +205,7 @@ XmlRpcValue Recording::request(const std::string& node, const char* method)
 {
   XmlRpcValue parameters;
   parameters[0] = ros::this_node::getName();
-  std::unique_ptr<XmlRpc::XmlRpcClient>& client = clients_[node];
+  std::unique_ptr<Client>& client = clients_[node];
   if (!client)
   {
     XmlRpcValue look_up;
@@ -195,10 +220,10 @@ XmlRpcValue Recording::request(const std::string& node, const char* method)
     {
       return emptyList();
     }
-    client = std::make_unique<XmlRpc::XmlRpcClient>(host.c_str(), static_cast<int>(port), "/");
+    client = std::make_unique<Client>(host.c_str(), static_cast<int>(port), "/");
   }
   XmlRpcValue answer;
-  if (!client->execute(method, parameters, answer) || client->isFault() || answer.getType() != XmlRpcValue::TypeArray)
+  if (!client->ask(method, parameters, answer) || answer.getType() != XmlRpcValue::TypeArray)
   {
     client.reset();
     return emptyList();

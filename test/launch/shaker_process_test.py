@@ -177,7 +177,7 @@ class ShakerProcessTest(unittest.TestCase):
         self.assertIn("a publisher of " + self.namespace + "/gap", printed)
         self.assertIn(self.namespace + "/record to record " + self.namespace + "/impact", printed)
 
-    def test_a_recorder_that_dies_ends_it(self):
+    def expect_failure_without_recorder(self, stop):
         directory = tempfile.TemporaryDirectory()
         self.addCleanup(directory.cleanup)
         record = subprocess.Popen(
@@ -189,9 +189,15 @@ class ShakerProcessTest(unittest.TestCase):
         process = self.start(parameters)
         blocks = self.subscribe()
         self.assertTrue(wait_until(lambda: blocks))
-        record.kill()
+        record.send_signal(stop)
         self.expect_end(process, 1)
         self.assertIn("in vain for " + self.namespace + "/record to receive", self.printed())
+
+    def test_a_recorder_that_dies_ends_it(self):
+        self.expect_failure_without_recorder(signal.SIGKILL)
+
+    def test_a_recorder_that_hangs_ends_it(self):
+        self.expect_failure_without_recorder(signal.SIGSTOP)
 
     def expect_clean_end(self, ask):
         process = self.start(sine(signal={"type": "sine", "acceleration": 1.0, "frequency": 1.0, "duration": 1000.0}))

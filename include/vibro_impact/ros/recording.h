@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <xmlrpcpp/XmlRpcClient.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 namespace vibro_impact::graph
@@ -42,12 +41,15 @@ class Recording
 public:
   /// Resolved names.
   Recording(std::vector<std::string> topics, std::string recorder);
+  ~Recording();
+  Recording(Recording&&) noexcept;
+  Recording& operator=(Recording&&) noexcept;
 
   /// Asks the master who publishes the topics, and the recorder for its process. Blocks for about a millisecond.
   void discover();
 
-  /// Asks the publishers found and then the recorder, about every topic in turn. A node that does not answer counts as
-  /// not connected. Blocks for about a millisecond.
+  /// Asks the publishers found and then the recorder, about every topic in turn. A node that does not answer
+  /// within seconds counts as not connected. Blocks for about a millisecond if all answer.
   std::vector<Delivery> ask();
 
   /// Whether the recorder has taken in all that it has received: all its threads sleep. Also true where that cannot be
@@ -60,6 +62,8 @@ public:
   }
 
 private:
+  class Client;
+
   /// What `node` answers to a request that takes only the caller's name; an empty list if it does not.
   XmlRpc::XmlRpcValue request(const std::string& node, const char* method);
 
@@ -67,7 +71,7 @@ private:
   std::string recorder_;
   int process_ = 0;                                             // of the recorder; 0: not of this machine, or not known
   std::map<std::string, std::vector<std::size_t>> publishers_;  // names, and which topics they publish
-  std::map<std::string, std::unique_ptr<XmlRpc::XmlRpcClient>> clients_;
+  std::map<std::string, std::unique_ptr<Client>> clients_;
 };
 
 }  // namespace vibro_impact::graph
