@@ -61,6 +61,9 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   reset_server_ = private_node.advertiseService("reset", &Simulator::onReset, this);
   excitation_subscriber_ =
       node.subscribe("base_excitation", queue_size, &Simulator::onExcitation, this, ros::TransportHints().tcpNoDelay());
+  // Also because roscpp's first line of the log registers the node anew: were it the last one, said to a newer node of
+  // the same name that takes over, the master would have that one end as well.
+  ROS_INFO("simulating what comes on topic %s", excitation_subscriber_.getTopic().c_str());
 }
 
 void Simulator::finish()

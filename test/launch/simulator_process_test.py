@@ -186,6 +186,7 @@ class SimulatorProcessTest(unittest.TestCase):
         self.assertTrue(all(gap.seq != 7 for gap in gaps), "a block of the second publisher was taken")
 
     def expect_clean_end(self, ask):
+        """The process ends by what `ask` does to it."""
         process = self.start(configuration())
         publisher = self.advertise()
         gaps, gap_subscriber = self.subscribe(self.namespace + "/gap", Gap)
@@ -211,6 +212,17 @@ class SimulatorProcessTest(unittest.TestCase):
         self.expect_clean_end(lambda process: subprocess.check_call(
             ["rosnode", "kill", self.namespace + "/simulator"], stdout=subprocess.DEVNULL))
         self.assertIn("asked to end: user request", self.printed())
+
+    def test_a_new_node_of_its_name_takes_over(self):
+        self.expect_clean_end(lambda process: self.start({}))
+        successor = self.processes[-1]
+        publisher = self.interfaces[0]
+        gaps, gap_subscriber = self.subscribe(self.namespace + "/gap", Gap)
+        self.assertTrue(wait_until(
+            lambda: publisher.get_num_connections() == 1 and gap_subscriber.get_num_connections() == 1))
+        publisher.publish(block(0, [0.0] * 10))
+        self.assertTrue(wait_until(lambda: gaps), self.printed())
+        self.assertIsNone(successor.poll())
 
 
 if __name__ == "__main__":
