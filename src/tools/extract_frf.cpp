@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <console_bridge/console.h>
 #include <boost/program_options.hpp>
 
 #include "vibro_impact/config/number.h"
@@ -207,6 +208,8 @@ void run(const Arguments& arguments)
 
 int main(int argc, char** argv)
 {
+  // What a library has to say of a damaged bag besides is in no message that a user understands.
+  console_bridge::noOutputHandler();
   try
   {
     const po::variables_map given = parse(argc, argv);

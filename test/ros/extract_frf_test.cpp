@@ -451,6 +451,16 @@ TEST_F(ExtractFrf, refusesATruncatedBagWhereverItIsCut)
   }
 }
 
+TEST_F(ExtractFrf, refusesADamagedBagWithOneLine)
+{
+  Sweep().run().write(path("run.bag"));
+  std::fstream file(path("run.bag"), std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(path("run.bag")) / 2));
+  file << std::string(20000, '\xff');
+  file.close();
+  expectRefusal(run(path("run.bag") + " --out " + path("results")), 1, "is cut off or damaged");
+}
+
 TEST_F(ExtractFrf, refusesABagThatIsStillBeingRecorded)
 {
   const SyntheticRun synthetic = Sweep().run();
