@@ -130,13 +130,13 @@ struct RecordedRun::Implementation
       if (connection->datatype == type)
       {
         all.insert(connection->topic);
-        if (!name_space.empty() && isInside(connection->topic, name_space))
+        if (isInside(connection->topic, name_space))
         {
           inside.insert(connection->topic);
         }
       }
     }
-    if (all.empty() && !required)
+    if (inside.empty() && !required)
     {
       return {};
     }
@@ -144,14 +144,15 @@ struct RecordedRun::Implementation
     {
       throw config::Error(names + ": holds no topic of type " + type);
     }
-    const std::set<std::string>& chosen = all.size() == 1 ? all : inside;
-    if (chosen.size() != 1)
+    if (inside.size() != 1)
     {
-      throw config::Error(names + ": holds " + std::to_string(all.size()) + " topics of type " + type + " (" +
-                          list(all) + "); choose the run by --namespace" +
-                          (name_space.empty() ? std::string() : ", '" + name_space + "' does not tell them apart"));
+      throw config::Error(names + ": holds " + std::to_string(all.size()) +
+                          (all.size() == 1 ? " topic of type " : " topics of type ") + type + " (" + list(all) + "); " +
+                          (name_space.empty() ? "choose the run by --namespace"
+                                              : "--namespace '" + name_space + "' must hold one, holds " +
+                                                    std::to_string(inside.size())));
     }
-    return *chosen.begin();
+    return *inside.begin();
   }
 
   void read(const std::vector<std::string>& wanted, const Progress& progress,

@@ -389,13 +389,21 @@ TEST_F(ExtractFrf, severalRunsInOneBagNeedANamespace)
   const std::string bags = path("a.bag") + " " + path("b.bag") + " --out " + path("results");
   expectRefusal(this->run(bags), 1,
                 "(/lab/rig2/base_excitation, /rig1/base_excitation); choose the run by --namespace");
-  expectRefusal(this->run(bags + " --namespace /rig"), 1, "'/rig' does not tell them apart");
+  expectRefusal(this->run(bags + " --namespace /rig"), 1, "--namespace '/rig' must hold one, holds 0");
   for (const std::string name : {"/rig1", "lab/rig2", "/lab/"})
   {
     const Outcome outcome = this->run(bags + " --namespace " + name);
     ASSERT_EQ(outcome.status, 0) << outcome.error;
     expectRows(sweep.expected(run));
   }
+}
+
+TEST_F(ExtractFrf, aNamespaceThatTheRunIsNotInIsRefused)
+{
+  Sweep().run().write(path("run.bag"));
+  expectRefusal(
+      this->run(path("run.bag") + " --out " + path("results") + " --namespace /rig1"), 1,
+      "holds 1 topic of type vibro_impact/BaseExcitation (/base_excitation); --namespace '/rig1' must hold one, holds 0");
 }
 
 TEST_F(ExtractFrf, refusesBagsWithoutATopic)
