@@ -37,6 +37,18 @@ std::int64_t threeHighestBits(std::int64_t ticks)
   }
   return (ticks >> shift) << shift;
 }
+
+/// The earliest time (s, or infinite) at which a quantity >= 0 can be zero that has this rate now, and a second
+/// derivative within +-bound from now on.
+double earliestZero(double value, double rate, double bound)
+{
+  if (bound == 0.0)
+  {
+    return rate < 0.0 ? -value / rate : std::numeric_limits<double>::infinity();
+  }
+  const double root = std::sqrt(rate * rate + 2.0 * value * bound);
+  return rate >= 0.0 ? (rate + root) / bound : 2.0 * value / (root - rate);
+}
 }  // namespace
 
 SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool phasor)
@@ -526,9 +538,14 @@ void SwitchedMotion::step(std::int64_t ticks, double time)
   }
 }
 
+bool SwitchedMotion::onWrongSide() const
+{
+  return side() * gap_ < -resolution_;
+}
+
 bool SwitchedMotion::crossed() const
 {
-  return side() * gap_ < -resolution_ && side() * rate_ < 0.0;
+  return onWrongSide() && side() * rate_ < 0.0;
 }
 
 void SwitchedMotion::locateSwitches(ImpactSink& sink)
@@ -611,21 +628,18 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
 {
   const double distance = std::max(0.0, side() * gap_);
   const double rate = side() * rate_;
-  double time = 0.0;
-  if (bound_ > 0.0)
+  double time = earliestZero(distance, rate, bound_);
+  if (onWrongSide())
   {
-    const double root = std::sqrt(rate * rate + 2.0 * distance * bound_);
-    time = rate >= 0.0 ? (rate + root) / bound_ : 2.0 * distance / (root - rate);
+    // On its way back. The gap makes a switch only where it turns round: a zero of the rate.
+    const double acceleration = now().derivative.col(3).dot(vectors().exponentials);
+    time = earliestZero(rate, side() * acceleration, boundOfDerivative(3));
   }
-  else
-  {
-    time = rate >= 0.0 ? length_ : -distance / rate;
-  }
-  const double ticks = time / tick_;
-  if (ticks < 65536.0 && distance <= resolution_ && hasNoRate())
+  else if (distance <= resolution_ && time < 65536.0 * tick_ && hasNoRate())
   {
     return departureTicks(left);
   }
+  const double ticks = time / tick_;
   if (ticks >= static_cast<double>(left))
   {
     return left;

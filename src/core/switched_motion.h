@@ -196,6 +196,7 @@ private:
   std::int64_t safeTicks(std::int64_t left);
   bool hasNoRate() const;
   std::int64_t departureTicks(std::int64_t left);
+  bool onWrongSide() const;
   bool crossed() const;
   void switchState(double time, ImpactSink& sink);
 

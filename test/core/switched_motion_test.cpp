@@ -453,6 +453,26 @@ TEST(SwitchedMotion, aStiffChatteringConjoinedBasisEnds)
   }
 }
 
+TEST(SwitchedMotion, aTruncatedBasisSwitchesAtTheSameTimesHoweverTheDriveIsSampled)
+{
+  // A jump of the gap leaves it on the wrong side, where the next switch is due as soon as it turns round.
+  SystemParameters parameters = limitingCase(1000.0, ConjoinedBasis{2, 2});
+  parameters.contact.clearance = 3.0e-7;
+  const auto model = makeModel(parameters);
+  const double coarse = 1.0e-4;
+  const double fine = coarse / 7.7;
+  const SampledRun expected = simulate(model, std::vector<double>(201, 1.0), coarse);
+  const SampledRun found = simulate(model, std::vector<double>(1541, 1.0), fine);
+  ASSERT_EQ(found.impacts.size(), expected.impacts.size());
+  ASSERT_GT(found.impacts.size(), 20u);
+  for (std::size_t i = 0; i < found.impacts.size(); ++i)
+  {
+    EXPECT_NEAR(onsetTime(found.impacts[i], fine), onsetTime(expected.impacts[i], coarse), 1e-10) << "impact " << i;
+    EXPECT_NEAR(found.impacts[i].duration, expected.impacts[i].duration, 1e-10) << "impact " << i;
+    EXPECT_NEAR(found.impacts[i].impulse, expected.impacts[i].impulse, 1e-12) << "impact " << i;
+  }
+}
+
 TEST(SwitchedMotion, switchesOfAnIntervalHaveABound)
 {
   // A very light drop onto a stop with strong contact damping: ever smaller jumps cannot go on for ever inside one
