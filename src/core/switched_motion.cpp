@@ -911,7 +911,7 @@ void SwitchedMotion::watchPeak(double start, std::int64_t ticks, double gap_befo
 }
 
 /// Finds a gap smaller than any so far between two samples of the step that began at `start`, if there is one.
-void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, double third_derivative_bound,
+void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, double highest_bound,
                                 int depth)
 {
   // With |g''| <= B the gap lies above a parabola through each end, with its value and slope there. They meet where
@@ -931,21 +931,22 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
   }
 
   Vectors& v = vectors();
-  const auto sample = [&](std::int64_t tick, double& curvature)
+  const auto sample = [&](std::int64_t tick)
   {
+    ++peak_evaluations_;
     v.trial = v.before;
     rotateTicks(v.trial, tick);
     GapSample result{tick, 0.0, 0.0};
     const double time = start + static_cast<double>(tick) * tick_;
     evaluate(v.trial, time, result.gap, result.rate);
-    curvature = now().derivative.col(3).dot(v.trial);
     notePeak(result.gap, time);
     return result;
   };
+  const auto derivative = [&](int order) { return now().derivative.col(order + 1).dot(v.trial); };
 
-  if (third_derivative_bound < 0.0)
+  if (highest_bound < 0.0)
   {
-    third_derivative_bound = boundOfDerivative(3, v.before);
+    highest_bound = boundOfDerivative(highest_derivative, v.before);
   }
   const bool minimum_inside = from.rate < 0.0 && to.rate > 0.0;
   // Linear interpolation of the rate alone may go on moving one end only: every other time the middle.
@@ -953,10 +954,27 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
   const std::int64_t range = to.tick - from.tick;
   const std::int64_t chosen =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(fraction * static_cast<double>(range)), 1, range - 1);
-  double curvature = 0.0;
-  GapSample middle = sample(from.tick + chosen, curvature);
+  GapSample middle = sample(from.tick + chosen);
+
+  // How far rate and curvature can be from those of the middle, anywhere up to the farther end: by Taylor's theorem. B
+  // alone says little where the terms of g'' cancel, as they do at the start from rest and between beams much alike.
   const double farthest = static_cast<double>(std::max(chosen, range - chosen)) * tick_;
-  if (curvature > third_derivative_bound * farthest)  // convex throughout: no more than one minimum
+  double curvature = derivative(2);
+  double rate_change = 0.0;
+  double curvature_change = 0.0;
+  double power = 1.0;  // farthest^(order - 2)/(order - 2)!
+  for (int order = 3; order <= highest_derivative; ++order)
+  {
+    power *= farthest / (order - 2);
+    const double size = order < highest_derivative ? std::abs(derivative(order)) : highest_bound;
+    curvature_change += size * power;
+    rate_change += size * power * farthest / (order - 1);
+  }
+  if (std::abs(middle.rate) > std::abs(curvature) * farthest + rate_change)  // no minimum but at the ends
+  {
+    return;
+  }
+  if (curvature > curvature_change)  // convex throughout: no more than one minimum
   {
     for (int iteration = 0; minimum_inside && iteration < 8; ++iteration)
     {
@@ -968,12 +986,13 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
         break;
       }
       const std::int64_t next = middle.tick + static_cast<std::int64_t>(correction / tick_);
-      middle = sample(std::clamp(next, from.tick, to.tick), curvature);
+      middle = sample(std::clamp(next, from.tick, to.tick));
+      curvature = derivative(2);
     }
     return;
   }
-  refinePeak(start, from, middle, third_derivative_bound, depth + 1);
-  refinePeak(start, middle, to, third_derivative_bound, depth + 1);
+  refinePeak(start, from, middle, highest_bound, depth + 1);
+  refinePeak(start, middle, to, highest_bound, depth + 1);
 }
 
 }  // namespace vibro_impact::core

@@ -110,6 +110,11 @@ public:
   {
     return steps_total_;
   }
+  /// The same on the way to peak forces.
+  std::uint64_t peakEvaluations() const
+  {
+    return peak_evaluations_;
+  }
   double tick() const
   {
     return tick_;
@@ -242,7 +247,7 @@ private:
     std::int64_t tick;
     double gap, rate;
   };
-  void refinePeak(double start, const GapSample& from, const GapSample& to, double third_derivative_bound, int depth);
+  void refinePeak(double start, const GapSample& from, const GapSample& to, double highest_bound, int depth);
 
   std::shared_ptr<const SwitchedModel> model_;
   bool phasor_;
@@ -270,6 +275,7 @@ private:
   std::uint64_t switches_ = 0;
   std::uint64_t switch_limit_reached_ = 0;
   std::uint64_t steps_total_ = 0;
+  std::uint64_t peak_evaluations_ = 0;
   std::uint64_t impacts_ = 0;
   Episode episode_;
 };

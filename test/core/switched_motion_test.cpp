@@ -426,6 +426,30 @@ TEST(SwitchedMotion, startFromRestAtZeroClearanceMakesNoNoise)
   }
 }
 
+TEST(SwitchedMotion, startFromRestNeedsNoEndlessSearch)
+{
+  // The terms of gap and acceleration cancel all but completely at first, and between beams much alike for ever.
+  for (const double ratio : {1000.0, 10.0, 1.01, 1.0001})
+  {
+    SystemParameters parameters = limitingCase(1000.0, AttachmentBasis{5});
+    BeamParameters beam2 = parameters.beam1;
+    beam2.youngs_modulus *= ratio;
+    parameters.beam1.contact_location = beam2.contact_location = 0.31 * beam2.length;
+    parameters.beam2 = beam2;
+    SwitchedMotion motion(makeModel(parameters), false);
+    motion.setInterval(2e-5);
+    const std::vector<double> drive = sine(400, 50.0, 2500.0, 2e-5);
+    Recorder recorder;
+    for (std::size_t i = 1; i < drive.size(); ++i)
+    {
+      motion.advanceLinear(drive[i - 1], drive[i], recorder);
+    }
+    EXPECT_FALSE(recorder.impacts.empty());
+    EXPECT_LT(motion.steps(), 50000u) << ratio;
+    EXPECT_LT(motion.peakEvaluations(), 20000u) << ratio;
+  }
+}
+
 TEST(SwitchedMotion, restStaysRest)
 {
   const auto model = makeModel(limitingCase(1000.0, AttachmentBasis{5}));
