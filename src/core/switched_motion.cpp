@@ -907,11 +907,11 @@ void SwitchedMotion::notePeak(double gap, double time)
 void SwitchedMotion::watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before)
 {
   notePeak(gap_, time_);
-  refinePeak(start, GapSample{0, gap_before, rate_before}, GapSample{ticks, gap_, rate_}, -1.0, 0);
+  refinePeak(start, GapSample{0, gap_before, rate_before}, GapSample{ticks, gap_, rate_}, DerivativeBounds{}, 0);
 }
 
 /// Finds a gap smaller than any so far between two samples of the step that began at `start`, if there is one.
-void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, double highest_bound,
+void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, DerivativeBounds bounds,
                                 int depth)
 {
   // With |g''| <= B the gap lies above a parabola through each end, with its value and slope there. They meet where
@@ -944,9 +944,9 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
   };
   const auto derivative = [&](int order) { return now().derivative.col(order + 1).dot(v.trial); };
 
-  if (highest_bound < 0.0)
+  if (depth == 0)
   {
-    highest_bound = boundOfDerivative(highest_derivative, v.before);
+    bounds = DerivativeBounds{boundOfDerivative(3, v.before), boundOfDerivative(highest_derivative, v.before)};
   }
   const bool minimum_inside = from.rate < 0.0 && to.rate > 0.0;
   // Linear interpolation of the rate alone may go on moving one end only: every other time the middle.
@@ -956,21 +956,27 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
       std::clamp<std::int64_t>(static_cast<std::int64_t>(fraction * static_cast<double>(range)), 1, range - 1);
   GapSample middle = sample(from.tick + chosen);
 
-  // How far rate and curvature can be from those of the middle, anywhere up to the farther end: by Taylor's theorem. B
-  // alone says little where the terms of g'' cancel, as they do at the start from rest and between beams much alike.
+  // How far rate and curvature can be from those of the middle, anywhere up to the farther end: by Taylor's theorem,
+  // with a bound of the third derivative or, where the terms of the lower ones cancel, of the highest. They cancel at
+  // the start from rest and between beams much alike.
   const double farthest = static_cast<double>(std::max(chosen, range - chosen)) * tick_;
   double curvature = derivative(2);
-  double rate_change = 0.0;
-  double curvature_change = 0.0;
-  double power = 1.0;  // farthest^(order - 2)/(order - 2)!
-  for (int order = 3; order <= highest_derivative; ++order)
+  double curvature_change = bounds.third * farthest;
+  double rate_change = 0.5 * curvature_change * farthest;
+  const auto monotonous = [&] { return std::abs(middle.rate) > std::abs(curvature) * farthest + rate_change; };
+  if (curvature <= curvature_change && !monotonous())
   {
-    power *= farthest / (order - 2);
-    const double size = order < highest_derivative ? std::abs(derivative(order)) : highest_bound;
-    curvature_change += size * power;
-    rate_change += size * power * farthest / (order - 1);
+    curvature_change = rate_change = 0.0;
+    double power = 1.0;  // farthest^(order - 2)/(order - 2)!
+    for (int order = 3; order <= highest_derivative; ++order)
+    {
+      power *= farthest / (order - 2);
+      const double size = order < highest_derivative ? std::abs(derivative(order)) : bounds.highest;
+      curvature_change += size * power;
+      rate_change += size * power * farthest / (order - 1);
+    }
   }
-  if (std::abs(middle.rate) > std::abs(curvature) * farthest + rate_change)  // no minimum but at the ends
+  if (monotonous())  // no minimum but at the ends
   {
     return;
   }
@@ -991,8 +997,8 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
     }
     return;
   }
-  refinePeak(start, from, middle, highest_bound, depth + 1);
-  refinePeak(start, middle, to, highest_bound, depth + 1);
+  refinePeak(start, from, middle, bounds, depth + 1);
+  refinePeak(start, middle, to, bounds, depth + 1);
 }
 
 }  // namespace vibro_impact::core

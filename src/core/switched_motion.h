@@ -247,7 +247,13 @@ private:
     std::int64_t tick;
     double gap, rate;
   };
-  void refinePeak(double start, const GapSample& from, const GapSample& to, double highest_bound, int depth);
+  /// Of the step in which a peak is searched; at depth 0 still unknown.
+  struct DerivativeBounds
+  {
+    double third = 0.0;
+    double highest = 0.0;
+  };
+  void refinePeak(double start, const GapSample& from, const GapSample& to, DerivativeBounds bounds, int depth);
 
   std::shared_ptr<const SwitchedModel> model_;
   bool phasor_;
