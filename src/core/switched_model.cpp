@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -27,8 +26,13 @@ struct SignedStructure
 /// One coordinate of the free state: frequency, gap per unit coordinate b = s phi(x_c), participation.
 using Coordinates = std::vector<Mode>;
 
-/// Below this share of their terms, sums that cancel in exact arithmetic are rounding.
-constexpr double rounding = 1.0e-13;
+/// Frequencies are equal if they differ by no more than this share of themselves: what rounding makes of those of two
+/// beams that differ in scale or mirror each other.
+constexpr double equal_frequencies = 1.0e-12;
+
+/// Where they are equal, a base motion that moves the gap by no more than this share of what it moves the structures
+/// does not move it at all. It is the gap of contact points that are off each other by such a share of the length.
+constexpr double common_motion = 1.0e-9;
 
 std::vector<SignedStructure> makeStructures(const SystemParameters& parameters)
 {
@@ -61,20 +65,11 @@ Residual residual(const Structure& structure, int kept, int orders)
 {
   const auto size = static_cast<std::size_t>(orders);
   Residual result{std::vector<double>(size, 0.0), std::vector<double>(size, 0.0)};
-  // The static terms converge slowly, but their sums over all modes are known: subtract.
-  long double receptance = structure.staticReceptance();
-  long double base_response = structure.staticBaseResponse();
-  for (int m = 1; m <= kept; ++m)
-  {
-    const Mode mode = structure.mode(m);
-    const long double compliance = 1.0L / (static_cast<long double>(mode.frequency) * mode.frequency);
-    receptance -= compliance * mode.contact_deflection * mode.contact_deflection;
-    base_response -= compliance * mode.contact_deflection * mode.participation;
-  }
-  result.receptance[0] = static_cast<double>(receptance);
-  result.base_response[0] = static_cast<double>(base_response);
+  result.receptance[0] = structure.staticReceptance(kept);
+  result.base_response[0] = structure.staticBaseResponse(kept);
 
-  // The others fall at least as m^-8 (m^-9 the second); forty times the kept modes leave less than 1e-11 of them.
+  // The higher orders fall at least as m^-8 (m^-9 the second); forty times the kept modes leave less than 1e-11 of
+  // them.
   const int last = structure.modeCount() == Structure::unlimited ? 40 * (kept + 1) : structure.modeCount();
   for (int m = last; m > kept; --m)  // small terms first
   {
@@ -93,35 +88,32 @@ Residual residual(const Structure& structure, int kept, int orders)
 
 /// Coordinates of equal frequency are rotated so that one of them carries the whole motion of the gap and the others
 /// leave it unchanged; any such rotation is as orthogonal as the modes were. What does not move the gap then says so
-/// exactly: two identical structures have no rounding noise between them.
+/// exactly: two structures that move alike have no rounding noise between them.
 void separateEqualFrequencies(Coordinates& coordinates)
 {
   std::stable_sort(coordinates.begin(), coordinates.end(),
                    [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
-  const double tolerance = 32.0 * std::numeric_limits<double>::epsilon();
   for (std::size_t first = 0, last = 0; first < coordinates.size(); first = last)
   {
     double deflection_squared = 0.0;
     double participation_squared = 0.0;
     double product = 0.0;
-    double product_size = 0.0;
-    for (last = first;
-         last < coordinates.size() && coordinates[last].frequency <= coordinates[first].frequency * (1.0 + tolerance);
-         ++last)
+    const double highest = coordinates[first].frequency * (1.0 + equal_frequencies);
+    for (last = first; last < coordinates.size() && coordinates[last].frequency <= highest; ++last)
     {
       const Mode& mode = coordinates[last];
       deflection_squared += mode.contact_deflection * mode.contact_deflection;
       participation_squared += mode.participation * mode.participation;
       product += mode.contact_deflection * mode.participation;
-      product_size += std::abs(mode.contact_deflection * mode.participation);
     }
     if (last - first < 2)
     {
       continue;
     }
     const double deflection = std::sqrt(deflection_squared);
-    const bool cancels = std::abs(product) <= rounding * product_size;
-    const double relative = deflection == 0.0 || cancels ? 0.0 : product / deflection;
+    const double participation = std::sqrt(participation_squared);
+    const bool moves_gap = std::abs(product) > common_motion * deflection * participation;
+    const double relative = moves_gap ? product / deflection : 0.0;
     const double common = std::sqrt(std::max(0.0, participation_squared - relative * relative));
     for (std::size_t i = first; i < last; ++i)
     {

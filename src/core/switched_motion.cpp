@@ -37,6 +37,18 @@ std::int64_t threeHighestBits(std::int64_t ticks)
   }
   return (ticks >> shift) << shift;
 }
+
+/// The earliest time (s, or infinite) at which a quantity >= 0 can be zero that has this rate now, and a second
+/// derivative within +-bound from now on.
+double earliestZero(double value, double rate, double bound)
+{
+  if (bound == 0.0)
+  {
+    return rate < 0.0 ? -value / rate : std::numeric_limits<double>::infinity();
+  }
+  const double root = std::sqrt(rate * rate + 2.0 * value * bound);
+  return rate >= 0.0 ? (rate + root) / bound : 2.0 * value / (root - rate);
+}
 }  // namespace
 
 SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool phasor)
@@ -526,9 +538,14 @@ void SwitchedMotion::step(std::int64_t ticks, double time)
   }
 }
 
+bool SwitchedMotion::onWrongSide() const
+{
+  return side() * gap_ < -resolution_;
+}
+
 bool SwitchedMotion::crossed() const
 {
-  return side() * gap_ < -resolution_ && side() * rate_ < 0.0;
+  return onWrongSide() && side() * rate_ < 0.0;
 }
 
 void SwitchedMotion::locateSwitches(ImpactSink& sink)
@@ -611,21 +628,18 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
 {
   const double distance = std::max(0.0, side() * gap_);
   const double rate = side() * rate_;
-  double time = 0.0;
-  if (bound_ > 0.0)
+  double time = earliestZero(distance, rate, bound_);
+  if (onWrongSide())
   {
-    const double root = std::sqrt(rate * rate + 2.0 * distance * bound_);
-    time = rate >= 0.0 ? (rate + root) / bound_ : 2.0 * distance / (root - rate);
+    // On its way back. The gap makes a switch only where it turns round: a zero of the rate.
+    const double acceleration = now().derivative.col(3).dot(vectors().exponentials);
+    time = earliestZero(rate, side() * acceleration, boundOfDerivative(3));
   }
-  else
-  {
-    time = rate >= 0.0 ? length_ : -distance / rate;
-  }
-  const double ticks = time / tick_;
-  if (ticks < 65536.0 && distance <= resolution_ && hasNoRate())
+  else if (distance <= resolution_ && time < 65536.0 * tick_ && hasNoRate())
   {
     return departureTicks(left);
   }
+  const double ticks = time / tick_;
   if (ticks >= static_cast<double>(left))
   {
     return left;
@@ -893,11 +907,11 @@ void SwitchedMotion::notePeak(double gap, double time)
 void SwitchedMotion::watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before)
 {
   notePeak(gap_, time_);
-  refinePeak(start, GapSample{0, gap_before, rate_before}, GapSample{ticks, gap_, rate_}, -1.0, 0);
+  refinePeak(start, GapSample{0, gap_before, rate_before}, GapSample{ticks, gap_, rate_}, DerivativeBounds{}, 0);
 }
 
 /// Finds a gap smaller than any so far between two samples of the step that began at `start`, if there is one.
-void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, double third_derivative_bound,
+void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSample& to, DerivativeBounds bounds,
                                 int depth)
 {
   // With |g''| <= B the gap lies above a parabola through each end, with its value and slope there. They meet where
@@ -917,21 +931,22 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
   }
 
   Vectors& v = vectors();
-  const auto sample = [&](std::int64_t tick, double& curvature)
+  const auto sample = [&](std::int64_t tick)
   {
+    ++peak_evaluations_;
     v.trial = v.before;
     rotateTicks(v.trial, tick);
     GapSample result{tick, 0.0, 0.0};
     const double time = start + static_cast<double>(tick) * tick_;
     evaluate(v.trial, time, result.gap, result.rate);
-    curvature = now().derivative.col(3).dot(v.trial);
     notePeak(result.gap, time);
     return result;
   };
+  const auto derivative = [&](int order) { return now().derivative.col(order + 1).dot(v.trial); };
 
-  if (third_derivative_bound < 0.0)
+  if (depth == 0)
   {
-    third_derivative_bound = boundOfDerivative(3, v.before);
+    bounds = DerivativeBounds{boundOfDerivative(3, v.before), boundOfDerivative(highest_derivative, v.before)};
   }
   const bool minimum_inside = from.rate < 0.0 && to.rate > 0.0;
   // Linear interpolation of the rate alone may go on moving one end only: every other time the middle.
@@ -939,10 +954,33 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
   const std::int64_t range = to.tick - from.tick;
   const std::int64_t chosen =
       std::clamp<std::int64_t>(static_cast<std::int64_t>(fraction * static_cast<double>(range)), 1, range - 1);
-  double curvature = 0.0;
-  GapSample middle = sample(from.tick + chosen, curvature);
+  GapSample middle = sample(from.tick + chosen);
+
+  // How far rate and curvature can be from those of the middle, anywhere up to the farther end: by Taylor's theorem,
+  // with a bound of the third derivative or, where the terms of the lower ones cancel, of the highest. They cancel at
+  // the start from rest and between beams much alike.
   const double farthest = static_cast<double>(std::max(chosen, range - chosen)) * tick_;
-  if (curvature > third_derivative_bound * farthest)  // convex throughout: no more than one minimum
+  double curvature = derivative(2);
+  double curvature_change = bounds.third * farthest;
+  double rate_change = 0.5 * curvature_change * farthest;
+  const auto monotonous = [&] { return std::abs(middle.rate) > std::abs(curvature) * farthest + rate_change; };
+  if (curvature <= curvature_change && !monotonous())
+  {
+    curvature_change = rate_change = 0.0;
+    double power = 1.0;  // farthest^(order - 2)/(order - 2)!
+    for (int order = 3; order <= highest_derivative; ++order)
+    {
+      power *= farthest / (order - 2);
+      const double size = order < highest_derivative ? std::abs(derivative(order)) : bounds.highest;
+      curvature_change += size * power;
+      rate_change += size * power * farthest / (order - 1);
+    }
+  }
+  if (monotonous())  // no minimum but at the ends
+  {
+    return;
+  }
+  if (curvature > curvature_change)  // convex throughout: no more than one minimum
   {
     for (int iteration = 0; minimum_inside && iteration < 8; ++iteration)
     {
@@ -954,12 +992,13 @@ void SwitchedMotion::refinePeak(double start, const GapSample& from, const GapSa
         break;
       }
       const std::int64_t next = middle.tick + static_cast<std::int64_t>(correction / tick_);
-      middle = sample(std::clamp(next, from.tick, to.tick), curvature);
+      middle = sample(std::clamp(next, from.tick, to.tick));
+      curvature = derivative(2);
     }
     return;
   }
-  refinePeak(start, from, middle, third_derivative_bound, depth + 1);
-  refinePeak(start, middle, to, third_derivative_bound, depth + 1);
+  refinePeak(start, from, middle, bounds, depth + 1);
+  refinePeak(start, middle, to, bounds, depth + 1);
 }
 
 }  // namespace vibro_impact::core

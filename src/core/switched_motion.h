@@ -110,6 +110,11 @@ public:
   {
     return steps_total_;
   }
+  /// The same on the way to peak forces.
+  std::uint64_t peakEvaluations() const
+  {
+    return peak_evaluations_;
+  }
   double tick() const
   {
     return tick_;
@@ -196,6 +201,7 @@ private:
   std::int64_t safeTicks(std::int64_t left);
   bool hasNoRate() const;
   std::int64_t departureTicks(std::int64_t left);
+  bool onWrongSide() const;
   bool crossed() const;
   void switchState(double time, ImpactSink& sink);
 
@@ -241,7 +247,13 @@ private:
     std::int64_t tick;
     double gap, rate;
   };
-  void refinePeak(double start, const GapSample& from, const GapSample& to, double third_derivative_bound, int depth);
+  /// Of the step in which a peak is searched; at depth 0 still unknown.
+  struct DerivativeBounds
+  {
+    double third = 0.0;
+    double highest = 0.0;
+  };
+  void refinePeak(double start, const GapSample& from, const GapSample& to, DerivativeBounds bounds, int depth);
 
   std::shared_ptr<const SwitchedModel> model_;
   bool phasor_;
@@ -269,6 +281,7 @@ private:
   std::uint64_t switches_ = 0;
   std::uint64_t switch_limit_reached_ = 0;
   std::uint64_t steps_total_ = 0;
+  std::uint64_t peak_evaluations_ = 0;
   std::uint64_t impacts_ = 0;
   Episode episode_;
 };

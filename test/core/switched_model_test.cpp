@@ -269,16 +269,16 @@ TEST(SwitchedModel, attachmentBasisHasTheStaticReceptanceOfTheBeams)
   // sum b^2/omega^2 over the coordinates is alpha_1(0) + alpha_2(0) exactly: that is what the attachment shapes are for
   const SystemParameters parameters = unlikeBeams(1e3, AttachmentBasis{2});
   const SwitchedModel model(parameters);
-  const double expected = PinnedBeam(parameters.beam1).staticReceptance() +
-                          PinnedBeam(std::get<BeamParameters>(parameters.beam2)).staticReceptance();
+  const double expected = PinnedBeam(parameters.beam1).staticReceptance(0) +
+                          PinnedBeam(std::get<BeamParameters>(parameters.beam2)).staticReceptance(0);
   const double sum = (model.free().contact_deflection / model.free().frequency).square().sum();
   EXPECT_NEAR(sum, expected, 1e-13 * expected);
   // and of the static response to the base
   const double response =
       (model.free().contact_deflection * model.free().participation / model.free().frequency.square()).sum();
-  const double expected_response = PinnedBeam(parameters.beam1).staticBaseResponse() -
-                                   PinnedBeam(std::get<BeamParameters>(parameters.beam2)).staticBaseResponse();
-  EXPECT_NEAR(response, expected_response, 1e-12 * PinnedBeam(parameters.beam1).staticBaseResponse());
+  const double expected_response = PinnedBeam(parameters.beam1).staticBaseResponse(0) -
+                                   PinnedBeam(std::get<BeamParameters>(parameters.beam2)).staticBaseResponse(0);
+  EXPECT_NEAR(response, expected_response, 1e-12 * PinnedBeam(parameters.beam1).staticBaseResponse(0));
 }
 
 TEST(SwitchedModel, identicalBeamsHaveNoExcitationOfTheGapAtAll)

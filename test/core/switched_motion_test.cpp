@@ -377,6 +377,35 @@ TEST(SwitchedMotion, identicalBeamsNeverMoveAgainstEachOther)
   }
 }
 
+TEST(SwitchedMotion, beamsThatMoveAlikeNeverMoveAgainstEachOther)
+{
+  SystemParameters parameters = limitingCase(1000.0, ConjoinedBasis{6, 6});
+  parameters.beam1.contact_location = 0.31 * parameters.beam1.length;
+  BeamParameters wider = parameters.beam1;
+  wider.width *= 3.0;
+  BeamParameters denser = parameters.beam1;
+  denser.youngs_modulus *= 7.0;
+  denser.density *= 7.0;
+  BeamParameters mirrored = wider;
+  mirrored.contact_location = mirrored.length - mirrored.contact_location;
+  for (const BeamParameters& beam2 : {wider, denser, mirrored})
+  {
+    parameters.beam2 = beam2;
+    for (const BasisParameters& basis : {BasisParameters(ConjoinedBasis{6, 6}), BasisParameters(AttachmentBasis{3}),
+                                         BasisParameters(AttachmentBasis{20}), BasisParameters(AttachmentBasis{100})})
+    {
+      parameters.basis = basis;
+      const auto model = makeModel(parameters);
+      const SampledRun run = simulate(model, noise(500, 50.0), 2e-5);
+      EXPECT_TRUE(run.impacts.empty());
+      for (const double gap : run.gap)
+      {
+        ASSERT_EQ(gap, 0.0);
+      }
+    }
+  }
+}
+
 TEST(SwitchedMotion, startFromRestAtZeroClearanceMakesNoNoise)
 {
   // Gap, velocity and acceleration are zero at the start, and for two beams so are further derivatives.
@@ -394,6 +423,30 @@ TEST(SwitchedMotion, startFromRestAtZeroClearanceMakesNoNoise)
         EXPECT_GE(impact.peak_force, 0.0);
       }
     }
+  }
+}
+
+TEST(SwitchedMotion, startFromRestNeedsNoEndlessSearch)
+{
+  // The terms of gap and acceleration cancel all but completely at first, and between beams much alike for ever.
+  for (const double ratio : {1000.0, 10.0, 1.01, 1.0001})
+  {
+    SystemParameters parameters = limitingCase(1000.0, AttachmentBasis{5});
+    BeamParameters beam2 = parameters.beam1;
+    beam2.youngs_modulus *= ratio;
+    parameters.beam1.contact_location = beam2.contact_location = 0.31 * beam2.length;
+    parameters.beam2 = beam2;
+    SwitchedMotion motion(makeModel(parameters), false);
+    motion.setInterval(2e-5);
+    const std::vector<double> drive = sine(400, 50.0, 2500.0, 2e-5);
+    Recorder recorder;
+    for (std::size_t i = 1; i < drive.size(); ++i)
+    {
+      motion.advanceLinear(drive[i - 1], drive[i], recorder);
+    }
+    EXPECT_FALSE(recorder.impacts.empty());
+    EXPECT_LT(motion.steps(), 50000u) << ratio;
+    EXPECT_LT(motion.peakEvaluations(), 20000u) << ratio;
   }
 }
 
@@ -424,6 +477,26 @@ TEST(SwitchedMotion, aStiffChatteringConjoinedBasisEnds)
   }
 }
 
+TEST(SwitchedMotion, aTruncatedBasisSwitchesAtTheSameTimesHoweverTheDriveIsSampled)
+{
+  // A jump of the gap leaves it on the wrong side, where the next switch is due as soon as it turns round.
+  SystemParameters parameters = limitingCase(1000.0, ConjoinedBasis{2, 2});
+  parameters.contact.clearance = 3.0e-7;
+  const auto model = makeModel(parameters);
+  const double coarse = 1.0e-4;
+  const double fine = coarse / 7.7;
+  const SampledRun expected = simulate(model, std::vector<double>(201, 1.0), coarse);
+  const SampledRun found = simulate(model, std::vector<double>(1541, 1.0), fine);
+  ASSERT_EQ(found.impacts.size(), expected.impacts.size());
+  ASSERT_GT(found.impacts.size(), 20u);
+  for (std::size_t i = 0; i < found.impacts.size(); ++i)
+  {
+    EXPECT_NEAR(onsetTime(found.impacts[i], fine), onsetTime(expected.impacts[i], coarse), 1e-10) << "impact " << i;
+    EXPECT_NEAR(found.impacts[i].duration, expected.impacts[i].duration, 1e-10) << "impact " << i;
+    EXPECT_NEAR(found.impacts[i].impulse, expected.impacts[i].impulse, 1e-12) << "impact " << i;
+  }
+}
+
 TEST(SwitchedMotion, switchesOfAnIntervalHaveABound)
 {
   // A very light drop onto a stop with strong contact damping: ever smaller jumps cannot go on for ever inside one
@@ -449,8 +522,8 @@ TEST(SwitchedMotion, interferenceFitRestsInStaticEquilibrium)
   const auto model = makeModel(parameters);
   const SampledRun run = simulate(model, std::vector<double>(100, 0.0), 2e-5);
   // the spring and both beams in series: g = clearance/(1 + k (alpha_1 + alpha_2))
-  const double receptance = PinnedBeam(parameters.beam1).staticReceptance() +
-                            PinnedBeam(std::get<BeamParameters>(parameters.beam2)).staticReceptance();
+  const double receptance = PinnedBeam(parameters.beam1).staticReceptance(0) +
+                            PinnedBeam(std::get<BeamParameters>(parameters.beam2)).staticReceptance(0);
   const double expected = -2e-5 / (1.0 + parameters.contact.stiffness * receptance);
   for (std::size_t i = 0; i < run.gap.size(); ++i)
   {

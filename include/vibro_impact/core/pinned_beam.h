@@ -21,11 +21,11 @@ public:
   }
   Mode mode(int m) const override;
 
-  /// a^2 (1 - a)^2 L^3/(3 E I) with a = x_c/L.
-  double staticReceptance() const override;
+  /// Of all modes a^2 (1 - a)^2 L^3/(3 E I) with a = x_c/L.
+  double staticReceptance(int kept) const override;
 
-  /// Deflection under a uniform load, m' x (L^3 - 2 L x^2 + x^3)/(24 E I) at x = x_c.
-  double staticBaseResponse() const override;
+  /// Of all modes the deflection under a uniform load, m' x (L^3 - 2 L x^2 + x^3)/(24 E I) at x = x_c.
+  double staticBaseResponse(int kept) const override;
 
   /// With lambda = L (m' omega^2/(E I))^(1/4):
   ///   alpha = L^3/(2 E I lambda^3) [sin(lambda a) sin(lambda (1-a))/sin lambda - sinh(lambda a) sinh(lambda

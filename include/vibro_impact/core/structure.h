@@ -30,11 +30,12 @@ public:
   /// Mode m = 1, 2, ... modeCount(), by ascending frequency.
   virtual Mode mode(int m) const = 0;
 
-  /// Static deflection of the contact point under a unit force there, sum_m phi_m^2/omega_m^2, m/N.
-  virtual double staticReceptance() const = 0;
+  /// Static deflection of the contact point under a unit force there without the part of the lowest `kept` modes,
+  /// sum_{m > kept} phi_m^2/omega_m^2, m/N; kept >= 0.
+  virtual double staticReceptance(int kept) const = 0;
 
-  /// Static deflection of the contact point under a unit base deceleration, sum_m phi_m Gamma_m/omega_m^2, s^2.
-  virtual double staticBaseResponse() const = 0;
+  /// The same under a unit base deceleration, sum_{m > kept} phi_m Gamma_m/omega_m^2, s^2.
+  virtual double staticBaseResponse(int kept) const = 0;
 
   /// Undamped point receptance alpha(omega) = sum_m phi_m^2/(omega_m^2 - omega^2) at the contact point, m/N, all modes.
   /// Infinite at a natural frequency whose mode moves the contact point.
