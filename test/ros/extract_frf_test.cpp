@@ -401,9 +401,9 @@ TEST_F(ExtractFrf, severalRunsInOneBagNeedANamespace)
 TEST_F(ExtractFrf, aNamespaceThatTheRunIsNotInIsRefused)
 {
   Sweep().run().write(path("run.bag"));
-  expectRefusal(
-      this->run(path("run.bag") + " --out " + path("results") + " --namespace /rig1"), 1,
-      "holds 1 topic of type vibro_impact/BaseExcitation (/base_excitation); --namespace '/rig1' must hold one, holds 0");
+  expectRefusal(this->run(path("run.bag") + " --out " + path("results") + " --namespace /rig1"), 1,
+                "holds 1 topic of type vibro_impact/BaseExcitation (/base_excitation); --namespace '/rig1' must hold "
+                "one, holds 0");
 }
 
 TEST_F(ExtractFrf, refusesBagsWithoutATopic)
