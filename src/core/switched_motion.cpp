@@ -496,12 +496,12 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
     const double gap_before = gap_;
     const double rate_before = rate_;
     const Eigen::Index half = t.factor_re.rows();
-    kickGrowEvaluate(v.exponentials.data(), slope_change, t.kick.data(), t.factor_re.data() + doublings_ * half,
-                     t.factor_im.data() + doublings_ * half, t.derivative.data() + 2 * half,
-                     t.derivative.data() + 4 * half, half, gap_, rate_);
+    const Forms forms = kickGrowEvaluate(v.exponentials.data(), slope_change, t.kick.data(),
+                                         t.factor_re.data() + doublings_ * half, t.factor_im.data() + doublings_ * half,
+                                         t.derivative.data() + 2 * half, t.derivative.data() + 4 * half, half);
     time_ = length_;
-    gap_ += lineGap(time_);
-    rate_ += lineRate();
+    gap_ = lineGap(time_) + forms.first;
+    rate_ = lineRate() + forms.second;
     if (state_ == 1)
     {
       watchPeak(0.0, std::int64_t{1} << doublings_, gap_before, rate_before);
