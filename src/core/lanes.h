@@ -6,7 +6,7 @@ namespace vibro_impact::core
 {
 // Vectors in the advance of the model have a length that is a multiple of `lanes` (padded with zeros). There is no
 // remainder to take care of, and every sum has one order, (l_0 + l_2) + (l_1 + l_3) of the lanes' sums, whatever
-// instructions the processor has: the same drive gives the same bits on all of them.
+// instructions the processor has.
 
 constexpr Eigen::Index lanes = 4;
 
