@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <console_bridge/console.h>
-#include <boost/program_options.hpp>
 
-#include "vibro_impact/config/number.h"
+#include "command_line.h"
 #include "vibro_impact/config/output_directory.h"
 #include "vibro_impact/config/response_table.h"
 #include "vibro_impact/ros/recorded_run.h"
@@ -21,12 +19,6 @@
 namespace
 {
 using namespace vibro_impact;
-namespace po = boost::program_options;
-
-struct UsageError : std::runtime_error
-{
-  using std::runtime_error::runtime_error;
-};
 
 struct Arguments
 {
@@ -36,11 +28,11 @@ struct Arguments
   graph::ExtractionOptions extraction;
 };
 
-po::options_description visibleOptions()
+tools::Options options()
 {
-  po::options_description options("Options", 100);
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  auto add = options.add_options();
+  using tools::text;
+  tools::Options result("Options", 100);
+  auto add = result.add_options();
   add("out", text("DIR"), "directory for frf.csv and impacts.csv; created if missing");
   add("allow-gaps", "leave out the steps where something is missing, rather than refuse the recording");
   add("namespace", text("NS"), "the run to take from a recording of several, such as /rig1");
@@ -48,51 +40,18 @@ po::options_description visibleOptions()
       "how far the amplitude of a cycle may be off that of its step, relative; less than 1");
   add("shortest-step", text("n")->default_value("4"), "cycles that make a step; at least 4");
   add("lowest-frequency", text("Hz")->default_value("1"), "lowest drive frequency to look for");
-  add("help,h", "show this text");
-  return options;
+  return result;
 }
 
-po::variables_map parse(int argc, char** argv)
-{
-  po::options_description all = visibleOptions();
-  all.add_options()("bags", po::value<std::vector<std::string>>());
-  po::positional_options_description positional;
-  positional.add("bags", -1);
-  po::variables_map given;
-  try
-  {
-    // Long options only in full, so that a misspelt one is not taken for another.
-    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(), given);
-  }
-  catch (const po::error& error)
-  {
-    throw UsageError(error.what());
-  }
-  return given;
-}
-
-double number(const po::variables_map& given, const std::string& option, double least, double greatest)
-{
-  const std::string text = given[option].as<std::string>();
-  const auto value = config::parseNumber(text);
-  if (!value || *value < least || *value > greatest)
-  {
-    throw UsageError("--" + option + " = \"" + text + "\": must be a number from " + config::formatNumber(least) +
-                     " to " + config::formatNumber(greatest));
-  }
-  return *value;
-}
-
-Arguments interpret(const po::variables_map& given)
+Arguments interpret(const tools::Given& given)
 {
   if (given.count("bags") == 0)
   {
-    throw UsageError("no bag is given");
+    throw tools::UsageError("no bag is given");
   }
   if (given.count("out") == 0)
   {
-    throw UsageError("--out is missing");
+    throw tools::UsageError("--out is missing");
   }
   Arguments arguments;
   arguments.bags = given["bags"].as<std::vector<std::string>>();
@@ -100,15 +59,9 @@ Arguments interpret(const po::variables_map& given)
   arguments.name_space = given.count("namespace") != 0 ? given["namespace"].as<std::string>() : std::string();
   arguments.extraction.allow_gaps = given.count("allow-gaps") != 0;
   core::StepSearchOptions& steps = arguments.extraction.steps;
-  steps.amplitude_tolerance = number(given, "acceleration-tolerance", 1.0e-3, 0.9);
-  steps.lowest_frequency = number(given, "lowest-frequency", 1.0e-3, 1.0e6);
-  const std::string shortest = given["shortest-step"].as<std::string>();
-  const auto cycles = config::parseInteger(shortest);
-  if (!cycles || *cycles < 4 || *cycles > 1000000)
-  {
-    throw UsageError("--shortest-step = \"" + shortest + "\": must be a whole number from 4 to 1000000");
-  }
-  steps.shortest_step = static_cast<int>(*cycles);
+  steps.amplitude_tolerance = tools::number(given, "acceleration-tolerance", 1.0e-3, 0.9);
+  steps.lowest_frequency = tools::number(given, "lowest-frequency", 1.0e-3, 1.0e6);
+  steps.shortest_step = static_cast<int>(tools::wholeNumber(given, "shortest-step", 4, 1'000'000));
   return arguments;
 }
 
@@ -210,29 +163,11 @@ int main(int argc, char** argv)
 {
   // What a library has to say of a damaged bag besides is in no message that a user understands.
   console_bridge::noOutputHandler();
-  try
-  {
-    const po::variables_map given = parse(argc, argv);
-    if (given.count("help") != 0)
-    {
-      std::cout
-          << "extract_frf BAG... --out DIR [options]\n\n"
-             "Extracts the repetitive impact frequency response from the recording of a stepped-sine run: one bag,\n"
-             "or all bags of a split one. The steps of the drive are found in the recorded excitation.\n\n"
-          << visibleOptions();
-      return 0;
-    }
-    run(interpret(given));
-    return 0;
-  }
-  catch (const UsageError& error)
-  {
-    std::cerr << "extract_frf: " << error.what() << " (see extract_frf --help)" << std::endl;
-    return 2;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "extract_frf: " << error.what() << std::endl;
-    return 1;
-  }
+  return tools::runTool(
+      {"extract_frf",
+       "extract_frf BAG... --out DIR [options]\n\n"
+       "Extracts the repetitive impact frequency response from the recording of a stepped-sine run: one bag,\n"
+       "or all bags of a split one. The steps of the drive are found in the recorded excitation.",
+       options(), "bags"},
+      argc, argv, [](const tools::Given& given) { run(interpret(given)); });
 }

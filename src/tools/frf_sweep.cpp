@@ -10,13 +10,11 @@
 #include <iostream>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <boost/program_options.hpp>
-
+#include "command_line.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/model_summary.h"
 #include "vibro_impact/config/number.h"
@@ -27,12 +25,6 @@
 namespace
 {
 using namespace vibro_impact;
-namespace po = boost::program_options;
-
-struct UsageError : std::runtime_error
-{
-  using std::runtime_error::runtime_error;
-};
 
 struct Arguments
 {
@@ -41,31 +33,7 @@ struct Arguments
   config::SweepOptions sweep;
 };
 
-double number(const po::variables_map& given, const std::string& option, double least, double greatest)
-{
-  const std::string text = given[option].as<std::string>();
-  const auto value = config::parseNumber(text);
-  if (!value || *value < least || *value > greatest)
-  {
-    throw UsageError("--" + option + " = \"" + text + "\": must be a number from " + config::formatNumber(least) +
-                     " to " + config::formatNumber(greatest));
-  }
-  return *value;
-}
-
-std::int64_t wholeNumber(const po::variables_map& given, const std::string& option, std::int64_t greatest)
-{
-  const std::string text = given[option].as<std::string>();
-  const auto value = config::parseInteger(text);
-  if (!value || *value < 1 || *value > greatest)
-  {
-    throw UsageError("--" + option + " = \"" + text + "\": must be a whole number from 1 to " +
-                     std::to_string(greatest));
-  }
-  return *value;
-}
-
-config::SweepStart start(const po::variables_map& given)
+config::SweepStart start(const tools::Given& given)
 {
   if (given.count("follow") == 0)
   {
@@ -74,16 +42,16 @@ config::SweepStart start(const po::variables_map& given)
   const std::string text = given["follow"].as<std::string>();
   if (text != "up" && text != "down")
   {
-    throw UsageError("--follow = \"" + text + "\": must be up or down");
+    throw tools::UsageError("--follow = \"" + text + "\": must be up or down");
   }
   return text == "up" ? config::SweepStart::follow_up : config::SweepStart::follow_down;
 }
 
-po::options_description visibleOptions()
+tools::Options options()
 {
-  po::options_description options("Options", 100);
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  auto add = options.add_options();
+  using tools::text;
+  tools::Options result("Options", 100);
+  auto add = result.add_options();
   add("from", text("A"), "lowest drive frequency omega*, in lowest natural frequencies of beam 1");
   add("to", text("B"), "highest drive frequency omega*");
   add("points", text("N"), "number of equally spaced frequencies, both ends included");
@@ -92,62 +60,41 @@ po::options_description visibleOptions()
   add("follow", text("up|down"), "start each frequency as the one before it ended, not from rest");
   add("threads", text("n"), "threads of a sweep from rest; all cores by default");
   add("out", text("DIR"), "directory for frf.csv, impacts.csv and model.csv; created if missing");
-  add("help,h", "show this text");
-  return options;
+  return result;
 }
 
-po::variables_map parse(int argc, char** argv)
-{
-  po::options_description all = visibleOptions();
-  all.add_options()("configuration", po::value<std::vector<std::string>>());
-  po::positional_options_description positional;
-  positional.add("configuration", -1);
-  po::variables_map given;
-  try
-  {
-    // Long options only in full, so that a misspelt one is not taken for another.
-    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).style(style).run(), given);
-  }
-  catch (const po::error& error)
-  {
-    throw UsageError(error.what());
-  }
-  return given;
-}
-
-Arguments interpret(const po::variables_map& given)
+Arguments interpret(const tools::Given& given)
 {
   for (const char* option : {"from", "to", "points", "out"})
   {
     if (given.count(option) == 0)
     {
-      throw UsageError("--" + std::string(option) + " is missing");
+      throw tools::UsageError("--" + std::string(option) + " is missing");
     }
   }
   const std::size_t files =
       given["configuration"].empty() ? 0 : given["configuration"].as<std::vector<std::string>>().size();
   if (files != 1)
   {
-    throw UsageError(std::to_string(files) + " configuration files are given: must be one");
+    throw tools::UsageError(std::to_string(files) + " configuration files are given: must be one");
   }
   Arguments arguments;
   arguments.configuration = given["configuration"].as<std::vector<std::string>>().front();
   arguments.out = given["out"].as<std::string>();
   config::SweepOptions& sweep = arguments.sweep;
-  sweep.from = number(given, "from", 1.0e-3, 1.0e5);
-  sweep.to = number(given, "to", 1.0e-3, 1.0e5);
-  sweep.points = static_cast<int>(wholeNumber(given, "points", 1'000'000));
-  sweep.cycles = static_cast<std::uint64_t>(wholeNumber(given, "cycles", 1'000'000'000));
-  sweep.acceleration = number(given, "acceleration", 1.0e-9, 1.0e9);
+  sweep.from = tools::number(given, "from", 1.0e-3, 1.0e5);
+  sweep.to = tools::number(given, "to", 1.0e-3, 1.0e5);
+  sweep.points = static_cast<int>(tools::wholeNumber(given, "points", 1, 1'000'000));
+  sweep.cycles = static_cast<std::uint64_t>(tools::wholeNumber(given, "cycles", 1, 1'000'000'000));
+  sweep.acceleration = tools::number(given, "acceleration", 1.0e-9, 1.0e9);
   sweep.start = start(given);
-  sweep.threads = given.count("threads") != 0 ? static_cast<unsigned>(wholeNumber(given, "threads", 1024))
+  sweep.threads = given.count("threads") != 0 ? static_cast<unsigned>(tools::wholeNumber(given, "threads", 1, 1024))
                                               : std::max(1u, std::thread::hardware_concurrency());
   if (sweep.points == 1 ? sweep.from != sweep.to : sweep.from >= sweep.to)
   {
-    throw UsageError("--from = " + given["from"].as<std::string>() + ": must be " +
-                     (sweep.points == 1 ? "equal to" : "less than") + " --to = " + given["to"].as<std::string>() +
-                     (sweep.points == 1 ? " for one point" : ""));
+    throw tools::UsageError("--from = " + given["from"].as<std::string>() + ": must be " +
+                            (sweep.points == 1 ? "equal to" : "less than") +
+                            " --to = " + given["to"].as<std::string>() + (sweep.points == 1 ? " for one point" : ""));
   }
   return arguments;
 }
@@ -217,27 +164,9 @@ void run(const Arguments& arguments)
 
 int main(int argc, char** argv)
 {
-  try
-  {
-    const po::variables_map given = parse(argc, argv);
-    if (given.count("help") != 0)
-    {
-      std::cout << "frf_sweep CONFIG --from A --to B --points N --out DIR [options]\n\n"
-                   "Computes the repetitive impact frequency response of the configuration in the file CONFIG.\n\n"
-                << visibleOptions();
-      return 0;
-    }
-    run(interpret(given));
-    return 0;
-  }
-  catch (const UsageError& error)
-  {
-    std::cerr << "frf_sweep: " << error.what() << " (see frf_sweep --help)" << std::endl;
-    return 2;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "frf_sweep: " << error.what() << std::endl;
-    return 1;
-  }
+  return tools::runTool({"frf_sweep",
+                         "frf_sweep CONFIG --from A --to B --points N --out DIR [options]\n\n"
+                         "Computes the repetitive impact frequency response of the configuration in the file CONFIG.",
+                         options(), "configuration"},
+                        argc, argv, [](const tools::Given& given) { run(interpret(given)); });
 }
