@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <utility>
 
+#include "text.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/ros/stream_rules.h"
 
@@ -13,15 +13,6 @@ namespace vibro_impact::graph
 {
 namespace
 {
-template <typename... Parts>
-std::string text(const Parts&... parts)
-{
-  std::ostringstream stream;
-  stream.precision(12);
-  (stream << ... << parts);
-  return stream.str();
-}
-
 // Numbers of samples up to here are exact in a double, by which samples are dated.
 constexpr std::uint64_t last_seq = std::uint64_t{1} << 53;
 

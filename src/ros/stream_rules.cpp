@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
+
+#include "text.h"
 
 namespace vibro_impact::graph
 {
@@ -11,15 +12,6 @@ namespace
 {
 /// Where ros::Time ends, s.
 constexpr double end_of_time = 4294967295.0;
-
-template <typename... Parts>
-std::string text(const Parts&... parts)
-{
-  std::ostringstream stream;
-  stream.precision(12);
-  (stream << ... << parts);
-  return stream.str();
-}
 
 Verdict refuse(const std::string& reason)
 {
