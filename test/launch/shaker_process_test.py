@@ -6,16 +6,13 @@ import signal
 import subprocess
 import tempfile
 import time
-import unittest
 
 import rospy
 import rostest
 from roslib.packages import find_node
 
+from node_process import PATIENCE, NodeProcessTest, wait_until
 from vibro_impact.msg import BaseExcitation, Gap
-
-# Longer than anything takes on a busy machine, s.
-PATIENCE = 30.0
 
 
 def sine(**other):
@@ -27,45 +24,8 @@ def sine(**other):
     return parameters
 
 
-def wait_until(condition):
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        if rospy.is_shutdown() or time.monotonic() > end:
-            return False
-        time.sleep(0.01)
-    return True
-
-
-class ShakerProcessTest(unittest.TestCase):
-    def setUp(self):
-        self.processes = []
-        self.interfaces = []
-        # A namespace of its own keeps every test apart from the others.
-        self.namespace = "/" + self._testMethodName
-        self.output = tempfile.TemporaryFile(mode="w+")
-
-    def tearDown(self):
-        for interface in self.interfaces:
-            interface.unregister()
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
-        self.output.close()
-        if rospy.has_param(self.namespace):
-            rospy.delete_param(self.namespace)
-
-    def start(self, parameters):
-        rospy.set_param(self.namespace + "/shaker", parameters)
-        program = find_node("vibro_impact", "shaker")[0]
-        process = subprocess.Popen(
-            [program, "__ns:=" + self.namespace], stdout=self.output, stderr=subprocess.STDOUT)
-        self.processes.append(process)
-        return process
-
-    def printed(self):
-        self.output.seek(0)
-        return self.output.read()
+class ShakerProcessTest(NodeProcessTest):
+    node = "shaker"
 
     def expect_end(self, process, status):
         self.assertEqual(process.wait(PATIENCE), status, self.printed())

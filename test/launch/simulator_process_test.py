@@ -6,8 +6,6 @@ import os
 import signal
 import subprocess
 import tempfile
-import time
-import unittest
 
 import rosbag
 import rospkg
@@ -15,13 +13,11 @@ import rospy
 import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from roslib.packages import find_node
 from rosgraph_msgs.msg import Log
 
+from node_process import PATIENCE, NodeProcessTest, wait_until
 from vibro_impact.msg import BaseExcitation, Gap, Impact
 
-# Longer than anything takes on a busy machine, s.
-PATIENCE = 30.0
 PERIOD = 2.0e-5
 
 
@@ -40,46 +36,8 @@ def block(seq, acceleration, begin=1700000000):
     return message
 
 
-def wait_until(condition):
-    end = time.monotonic() + PATIENCE
-    while not condition():
-        if rospy.is_shutdown() or time.monotonic() > end:
-            return False
-        time.sleep(0.01)
-    return True
-
-
-class SimulatorProcessTest(unittest.TestCase):
-    def setUp(self):
-        self.processes = []
-        self.interfaces = []
-        # A namespace of its own keeps every test apart from the others.
-        self.namespace = "/" + self._testMethodName
-        self.output = tempfile.TemporaryFile(mode="w+")
-
-    def tearDown(self):
-        for interface in self.interfaces:
-            interface.unregister()
-        for process in self.processes:
-            if process.poll() is None:
-                process.kill()
-            process.wait()
-        self.output.close()
-        if rospy.has_param(self.namespace):
-            rospy.delete_param(self.namespace)
-
-    def start(self, parameters):
-        if parameters:
-            rospy.set_param(self.namespace + "/simulator", parameters)
-        program = find_node("vibro_impact", "simulator")[0]
-        process = subprocess.Popen(
-            [program, "__ns:=" + self.namespace], stdout=self.output, stderr=subprocess.STDOUT)
-        self.processes.append(process)
-        return process
-
-    def printed(self):
-        self.output.seek(0)
-        return self.output.read()
+class SimulatorProcessTest(NodeProcessTest):
+    node = "simulator"
 
     def subscribe(self, topic, kind):
         messages = []

@@ -1,0 +1,56 @@
+"""A node as a process of its own, for the tests of how it starts, what it says and how it ends."""
+
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rospy
+from roslib.packages import find_node
+
+# Longer than anything takes on a busy machine, s.
+PATIENCE = 30.0
+
+
+def wait_until(condition):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        if rospy.is_shutdown() or time.monotonic() > end:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+class NodeProcessTest(unittest.TestCase):
+    node = None  # name of the program, set by the tests of one
+
+    def setUp(self):
+        self.processes = []
+        self.interfaces = []
+        # A namespace of its own keeps every test apart from the others.
+        self.namespace = "/" + self._testMethodName
+        self.output = tempfile.TemporaryFile(mode="w+")
+
+    def tearDown(self):
+        for interface in self.interfaces:
+            interface.unregister()
+        for process in self.processes:
+            if process.poll() is None:
+                process.kill()
+            process.wait()
+        self.output.close()
+        if rospy.has_param(self.namespace):
+            rospy.delete_param(self.namespace)
+
+    def start(self, parameters):
+        if parameters:
+            rospy.set_param(self.namespace + "/" + self.node, parameters)
+        program = find_node("vibro_impact", self.node)[0]
+        process = subprocess.Popen(
+            [program, "__ns:=" + self.namespace], stdout=self.output, stderr=subprocess.STDOUT)
+        self.processes.append(process)
+        return process
+
+    def printed(self):
+        self.output.seek(0)
+        return self.output.read()
