@@ -135,7 +135,7 @@ std::string Shaker::missing()
     append(list, "subscribers of " + publisher_.getTopic() + " (" + std::to_string(subscribers) + " of " +
                      std::to_string(parameters_.wait_for_subscribers) + " are there)");
   }
-  if (subscriber_ && subscriber_.getNumPublishers() == 0)
+  if (subscriber_ && !isConnected(query_, subscriber_.getTopic(), ros::this_node::getName()))
   {
     append(list, "a publisher of " + subscriber_.getTopic());
   }

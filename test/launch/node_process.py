@@ -4,7 +4,9 @@ import subprocess
 import tempfile
 import time
 import unittest
+from xmlrpc.client import ServerProxy
 
+import rosgraph
 import rospy
 from roslib.packages import find_node
 
@@ -19,6 +21,18 @@ def wait_until(condition):
             return False
         time.sleep(0.01)
     return True
+
+
+def is_connected(node, topics):
+    """Whether `node` sends all of these topics to this one. A subscriber counts its connection before that."""
+    try:
+        address = rosgraph.Master(rospy.get_name()).lookupNode(node)
+        _, _, connections = ServerProxy(address).getBusInfo(rospy.get_name())
+    except (rosgraph.MasterException, OSError):
+        return False
+    sent = {connection[4] for connection in connections
+            if connection[1] == rospy.get_name() and connection[2] == "o"}
+    return sent.issuperset(topics)
 
 
 class NodeProcessTest(unittest.TestCase):

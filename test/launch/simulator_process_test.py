@@ -15,7 +15,7 @@ import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph_msgs.msg import Log
 
-from node_process import PATIENCE, NodeProcessTest, wait_until
+from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
 from vibro_impact.msg import BaseExcitation, Gap, Impact
 
 PERIOD = 2.0e-5
@@ -41,9 +41,15 @@ class SimulatorProcessTest(NodeProcessTest):
 
     def subscribe(self, topic, kind):
         messages = []
-        subscriber = rospy.Subscriber(topic, kind, messages.append, queue_size=None)
-        self.interfaces.append(subscriber)
-        return messages, subscriber
+        self.interfaces.append(rospy.Subscriber(topic, kind, messages.append, queue_size=None))
+        return messages
+
+    def connect(self, publisher, *topics):
+        """Waits until nothing said to the simulator, nor by it on these topics, can be missed."""
+        self.assertTrue(wait_until(
+            lambda: publisher.get_num_connections() == 1
+            and is_connected(self.namespace + "/simulator", [topic if topic[0] == "/" else self.namespace + "/" + topic
+                                                             for topic in topics])), self.printed())
 
     def advertise(self):
         publisher = rospy.Publisher(self.namespace + "/base_excitation", BaseExcitation, queue_size=100)
@@ -76,7 +82,7 @@ class SimulatorProcessTest(NodeProcessTest):
         self.expect_failure({}, ["beam1 is missing", "beam2 is missing", "contact is missing", "damping is missing"])
 
     def test_says_what_it_waits_for(self):
-        log, _ = self.subscribe("/rosout", Log)
+        log = self.subscribe("/rosout", Log)
         self.start(configuration())
         text = "still waiting for data on topic " + self.namespace + "/base_excitation"
         self.assertTrue(wait_until(lambda: any(text in message.msg for message in log)))
@@ -86,7 +92,7 @@ class SimulatorProcessTest(NodeProcessTest):
         self.addCleanup(rospy.delete_param, "/use_sim_time")
         self.start(configuration())
         publisher = self.advertise()
-        self.assertTrue(wait_until(lambda: publisher.get_num_connections() == 1))
+        self.connect(publisher)
         publisher.publish(block(0, [1.0, math.nan]))
         self.assertTrue(wait_until(lambda: "block refused: acceleration[1] is nan m/s^2" in self.printed()))
 
@@ -96,9 +102,8 @@ class SimulatorProcessTest(NodeProcessTest):
         parameters["max_input_age"] = 0.3
         self.start(parameters)
         publisher = self.advertise()
-        diagnostics, subscriber = self.subscribe("/diagnostics", DiagnosticArray)
-        self.assertTrue(wait_until(
-            lambda: publisher.get_num_connections() == 1 and subscriber.get_num_connections() == 1))
+        diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
+        self.connect(publisher, "/diagnostics")
         # A quarter of an hour between two samples: thousands of vibrations, most of a second of computing.
         message = block(0, [1.0e5 * (-1.0) ** i for i in range(12)])
         message.sample_period = 1000.0
@@ -117,8 +122,8 @@ class SimulatorProcessTest(NodeProcessTest):
         parameters["max_input_age"] = 60.0
         self.start(parameters)
         publisher = self.advertise()
-        gaps, _ = self.subscribe(self.namespace + "/gap", Gap)
-        diagnostics, _ = self.subscribe("/diagnostics", DiagnosticArray)
+        gaps = self.subscribe(self.namespace + "/gap", Gap)
+        diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
         sent = 0
 
         def send():
@@ -126,7 +131,7 @@ class SimulatorProcessTest(NodeProcessTest):
             publisher.publish(block(10 * sent, [0.0] * 10))
             sent += 1
 
-        self.assertTrue(wait_until(lambda: publisher.get_num_connections() == 1))
+        self.connect(publisher, "gap", "/diagnostics")
         send()
         self.assertTrue(wait_until(lambda: gaps))
         self.processes.append(subprocess.Popen([
@@ -149,11 +154,9 @@ class SimulatorProcessTest(NodeProcessTest):
         parameters["diagnostic_period"] = 0.1
         self.start(parameters)
         publisher = self.advertise()
-        impacts, impact_subscriber = self.subscribe(self.namespace + "/impact", Impact)
-        diagnostics, diagnostic_subscriber = self.subscribe("/diagnostics", DiagnosticArray)
-        self.assertTrue(wait_until(
-            lambda: publisher.get_num_connections() == 1 and impact_subscriber.get_num_connections() == 1
-            and diagnostic_subscriber.get_num_connections() == 1))
+        impacts = self.subscribe(self.namespace + "/impact", Impact)
+        diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
+        self.connect(publisher, "impact", "/diagnostics")
         # Near the resonance, then at rest: nothing stays open.
         samples = [50.0 * math.sin(1.6 * 1705.6 * i * PERIOD) for i in range(20000)] + [0.0] * 5000
         blocks = [block(i, samples[i:i + 250]) for i in range(0, len(samples), 250)]
@@ -197,11 +200,9 @@ class SimulatorProcessTest(NodeProcessTest):
         """The process ends by what `ask` does to it."""
         process = self.start(configuration())
         publisher = self.advertise()
-        gaps, gap_subscriber = self.subscribe(self.namespace + "/gap", Gap)
-        impacts, impact_subscriber = self.subscribe(self.namespace + "/impact", Impact)
-        self.assertTrue(wait_until(
-            lambda: publisher.get_num_connections() == 1 and gap_subscriber.get_num_connections() == 1
-            and impact_subscriber.get_num_connections() == 1))
+        gaps = self.subscribe(self.namespace + "/gap", Gap)
+        impacts = self.subscribe(self.namespace + "/impact", Impact)
+        self.connect(publisher, "gap", "impact")
         # An acceleration that grows to a steady one presses the structures together for good.
         publisher.publish(block(0, [10.0 * (1.0 - math.exp(-0.01 * i)) for i in range(1000)]))
         self.assertTrue(wait_until(lambda: gaps))
@@ -225,9 +226,8 @@ class SimulatorProcessTest(NodeProcessTest):
         self.expect_clean_end(lambda process: self.start({}))
         successor = self.processes[-1]
         publisher = self.interfaces[0]
-        gaps, gap_subscriber = self.subscribe(self.namespace + "/gap", Gap)
-        self.assertTrue(wait_until(
-            lambda: publisher.get_num_connections() == 1 and gap_subscriber.get_num_connections() == 1))
+        gaps = self.subscribe(self.namespace + "/gap", Gap)
+        self.connect(publisher, "gap")
         publisher.publish(block(0, [0.0] * 10))
         self.assertTrue(wait_until(lambda: gaps), self.printed())
         self.assertIsNone(successor.poll())

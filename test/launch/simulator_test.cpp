@@ -22,6 +22,7 @@
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/core/switched_model.h"
 #include "vibro_impact/ros/conversions.h"
+#include "vibro_impact/ros/node_query.h"
 
 namespace core = vibro_impact::core;
 namespace graph = vibro_impact::graph;
@@ -65,10 +66,11 @@ public:
            spinUntil(
                [this]
                {
-                 return excitation_.getNumSubscribers() == 1 && std::all_of(subscribers_.begin(), subscribers_.end(),
-                                                                            [](const ros::Subscriber& subscriber) {
-                                                                              return subscriber.getNumPublishers() == 1;
-                                                                            });
+                 return excitation_.getNumSubscribers() == 1 &&
+                        std::all_of(
+                            subscribers_.begin(), subscribers_.end(),
+                            [this](const ros::Subscriber& subscriber)
+                            { return graph::isConnected(query_, subscriber.getTopic(), ros::this_node::getName()); });
                });
   }
 
@@ -167,6 +169,7 @@ private:
   ros::Publisher excitation_;
   std::vector<ros::Subscriber> subscribers_;
   ros::ServiceClient reset_;
+  graph::NodeQuery query_;
   std::int64_t resets_ = 0;
 };
 

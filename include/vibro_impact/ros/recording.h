@@ -3,11 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <xmlrpcpp/XmlRpcValue.h>
+#include "vibro_impact/ros/node_query.h"
 
 namespace vibro_impact::graph
 {
@@ -41,9 +40,6 @@ class Recording
 public:
   /// Resolved names.
   Recording(std::vector<std::string> topics, std::string recorder);
-  ~Recording();
-  Recording(Recording&&) noexcept;
-  Recording& operator=(Recording&&) noexcept;
 
   /// Asks the master who publishes the topics, and the recorder for its process. Blocks for about a millisecond.
   void discover();
@@ -62,16 +58,11 @@ public:
   }
 
 private:
-  class Client;
-
-  /// What `node` answers to a request that takes only the caller's name; an empty list if it does not.
-  XmlRpc::XmlRpcValue request(const std::string& node, const char* method);
-
   std::vector<std::string> topics_;
   std::string recorder_;
   int process_ = 0;                                             // of the recorder; 0: not of this machine, or not known
   std::map<std::string, std::vector<std::size_t>> publishers_;  // names, and which topics they publish
-  std::map<std::string, std::unique_ptr<Client>> clients_;
+  NodeQuery query_;
 };
 
 }  // namespace vibro_impact::graph

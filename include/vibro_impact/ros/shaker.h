@@ -13,6 +13,7 @@
 #include <vibro_impact/Gap.h>
 
 #include "vibro_impact/core/drive_signal.h"
+#include "vibro_impact/ros/node_query.h"
 #include "vibro_impact/ros/recording.h"
 #include "vibro_impact/ros/samples.h"
 #include "vibro_impact/ros/shaker_parameters.h"
@@ -67,6 +68,7 @@ private:
   double reference_frequency_;
   ros::Publisher publisher_;
   ros::Subscriber subscriber_;
+  NodeQuery query_;
   Samples block_;
   BaseExcitation message_;
   std::uint64_t published_ = 0;  // samples
