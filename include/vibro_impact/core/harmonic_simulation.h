@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
+#include "vibro_impact/core/energy_account.h"
+#include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/initial_motion.h"
 #include "vibro_impact/core/response.h"
 #include "vibro_impact/core/switched_model.h"
 
@@ -26,6 +30,10 @@ public:
   /// Back to rest at time zero; impact numbers start anew.
   void reset();
 
+  /// As reset(), but in the given motion instead of at rest. Throws std::invalid_argument, as
+  /// SwitchedModel::freeCoordinates() does, and leaves everything as it was.
+  void start(const InitialMotion& motion);
+
   /// From now on drives with `frequency` (rad/s, finite, > 0) and amplitude `acceleration` (m/s^2, finite, >= 0),
   /// starting at phase zero; displacement and velocity are kept, time is set to zero. Throws std::invalid_argument for
   /// a value out of range, and where the drive meets an undamped natural frequency exactly.
@@ -33,6 +41,17 @@ public:
 
   /// Advances over `cycles` drive cycles. An impact's `interval` is the number of the cycle since setDrive().
   void advance(std::uint64_t cycles, ImpactSink& sink);
+
+  /// The same motion, bit for bit, and its history: `history` takes `cycles` times `samples_per_cycle` (>= 1) samples,
+  /// equally spaced, the last of each cycle at its end. The start of the motion is what sample() says before. Nothing
+  /// in it allocates.
+  void advance(std::uint64_t cycles, ImpactSink& sink, std::size_t samples_per_cycle, HistorySample* history);
+
+  /// Now: at the end of the last cycle, or at the start.
+  HistorySample sample() const;
+
+  /// Since reset() or start(), over any number of drives.
+  EnergyAccount energyAccount() const;
 
   double time() const;  ///< since setDrive(), s
   const SwitchedModel& model() const;

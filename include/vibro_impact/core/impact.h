@@ -17,8 +17,11 @@ struct Impact
   double peak_time = 0.0;         ///< time from the onset to the peak force, s
   double approach_speed = 0.0;    ///< -g' at the onset, m/s; 0 if the episode was there at the start
   double separation_speed = 0.0;  ///< g' at the release, m/s; 0 if it was cut short
-  double energy_lost = 0.0;       ///< dissipated during the episode, the mapping's loss included, J
+  double energy_lost = 0.0;       ///< dissipated + mapping_loss, J
   bool cut_short = false;         ///< not the whole episode: in contact at the start, a reset, or the end of the drive
+  double dissipated = 0.0;        ///< by damping during the episode, J
+  double mapping_loss = 0.0;      ///< lost by the mapping at onset and release, J; 0 in the attachment basis
+  double base_work = 0.0;         ///< work of the base on both structures during the episode, J
 };
 
 /// Whoever wants to hear of impacts while a simulation advances. Called in the order of release.

@@ -4,7 +4,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "vibro_impact/core/energy_account.h"
+#include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
+#include "vibro_impact/core/initial_motion.h"
 #include "vibro_impact/core/switched_model.h"
 
 namespace vibro_impact::core
@@ -25,12 +28,22 @@ public:
   /// Back to rest: the next sample is sample 0. An open episode is reported to `sink` as cut short.
   void reset(ImpactSink& sink);
 
+  /// As reset(), but sample 0 finds the model in the given motion. Throws std::invalid_argument, as
+  /// SwitchedModel::freeCoordinates() does, and leaves everything as it was.
+  void start(const InitialMotion& motion, ImpactSink& sink);
+
   /// Takes the next `count` samples of the base acceleration (m/s^2, finite) and writes the gap (m) and the contact
   /// force (N, positive in compression) at the time of each. Reports every impact that ends on the way.
   void advance(const double* acceleration, std::size_t count, double* gap, double* force, ImpactSink& sink);
 
   /// Reports an open episode to `sink` as cut short, at the end of the stream.
   void finish(ImpactSink& sink);
+
+  /// The motion at the last sample taken (its gap and force are those of advance()), or before the first one.
+  HistorySample sample() const;
+
+  /// Since rest or start(), up to the last sample taken.
+  EnergyAccount energyAccount() const;
 
   std::uint64_t samples() const;  ///< samples taken since rest
   double samplePeriod() const;    ///< s

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "vibro_impact/core/initial_motion.h"
 #include "vibro_impact/core/parameters.h"
 #include "vibro_impact/core/structure.h"
 
@@ -65,6 +66,11 @@ public:
   /// For each S0 coordinate the share 1 - sum_n T_mn^2 of its energy that a switch to S1 loses; zero in the attachment
   /// basis.
   Eigen::ArrayXd mappingLoss() const;
+
+  /// Displacement and velocity of the S0 coordinates (free().size() each) in the given motion. Throws
+  /// std::invalid_argument for a mode that the basis does not have, and for a value that is not finite; the message
+  /// names both.
+  void freeCoordinates(const InitialMotion& motion, Eigen::VectorXd& displacement, Eigen::VectorXd& velocity) const;
 
   double stiffness() const
   {
