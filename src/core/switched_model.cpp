@@ -307,10 +307,13 @@ Coordinates lowestModes(const std::vector<SignedStructure>& structures, std::siz
   std::vector<double> frequencies;
   for (const Mode& mode : lowest)
   {
-    frequencies.push_back(mode.frequency);
+    if (mode.frequency > 0.0)
+    {
+      frequencies.push_back(mode.frequency);
+    }
   }
   std::sort(frequencies.begin(), frequencies.end());
-  const double limit = factor * frequencies[std::min(count, frequencies.size()) - 1];
+  const double limit = frequencies.empty() ? 0.0 : factor * frequencies[std::min(count, frequencies.size()) - 1];
 
   Coordinates coordinates;
   kept.clear();
@@ -424,9 +427,9 @@ SwitchedModel::SwitchedModel(const std::vector<Mode>& modes, const ContactParame
   }
   for (const Mode& mode : modes)
   {
-    if (!std::isfinite(mode.frequency) || mode.frequency <= 0.0)
+    if (!std::isfinite(mode.frequency) || mode.frequency < 0.0)
     {
-      refuse("frequency of a mode", mode.frequency, "finite and > 0, rad/s");
+      refuse("frequency of a mode", mode.frequency, "finite and >= 0, rad/s");
     }
     if (!std::isfinite(mode.contact_deflection) || !std::isfinite(mode.participation))
     {

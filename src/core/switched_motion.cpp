@@ -63,7 +63,9 @@ SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool 
     v.displacement = v.velocity = Eigen::VectorXd::Zero(modes);
     tabulate(state);
   }
-  lowest_frequency_ = std::min(model_->free().frequency(0), model_->contact().frequency(0));
+  const LinearState& contact = model_->contact();
+  lowest_frequency_ =
+      (contact.contact_deflection != 0.0).select(contact.frequency, std::numeric_limits<double>::infinity()).minCoeff();
   rest();
 }
 
@@ -75,14 +77,30 @@ void SwitchedMotion::tabulate(int state)
   Tables& t = tables_[static_cast<std::size_t>(state)];
 
   const Eigen::ArrayXd squared = linear.frequency.square();
+  const auto elastic = [&linear](const Eigen::ArrayXd& values) -> Eigen::ArrayXd
+  { return (linear.frequency > 0.0).select(values, 0.0); };
+  t.bodies = (linear.frequency == 0.0).count();
   t.decay = linear.damping_ratio * linear.frequency;
   t.damped = linear.frequency * (1.0 - linear.damping_ratio.square()).sqrt();
-  t.compliance = linear.participation / squared;
-  t.lag = 2.0 * linear.damping_ratio * linear.participation / (squared * linear.frequency);
-  t.standing = linear.preload / squared;
+  t.compliance = elastic(linear.participation / squared);
+  t.lag = elastic(2.0 * linear.damping_ratio * linear.participation / (squared * linear.frequency));
+  t.standing = elastic(linear.preload / squared);
   t.transfer_re = t.transfer_im = Eigen::ArrayXd::Zero(modes);
 
+  for (Eigen::Index n = 0; n < t.bodies; ++n)
+  {
+    if (linear.contact_deflection(n) != 0.0)
+    {
+      t.gap_body = n;
+      t.body_pull = linear.contact_deflection(n) * linear.participation(n);
+    }
+  }
+
   t.line_constant = model_->clearance() + (linear.contact_deflection * t.standing).sum();
+  if (state == 1 && tables_[0].gap_body >= 0)
+  {
+    t.line_constant = 0.0;  // nothing presses a free body against the spring
+  }
   t.line_compliance = (linear.contact_deflection * t.compliance).sum();
   t.line_lag = (linear.contact_deflection * t.lag).sum();
   t.momentum_constant = (linear.participation * t.standing).sum();
@@ -91,7 +109,7 @@ void SwitchedMotion::tabulate(int state)
 
   t.kick = Eigen::VectorXd::Zero(2 * half);
   t.kick.head(modes) = -t.lag;
-  t.kick.segment(half, modes) = -(t.compliance - t.decay * t.lag) / t.damped;
+  t.kick.segment(half, modes) = -elastic((t.compliance - t.decay * t.lag) / t.damped);
   const Eigen::ArrayXd kick_size =
       (t.kick.head(modes).array().square() + t.kick.segment(half, modes).array().square()).sqrt();
   t.kick_bound = (linear.contact_deflection.abs() * squared * kick_size).sum();
@@ -99,7 +117,7 @@ void SwitchedMotion::tabulate(int state)
   t.derivative = Eigen::MatrixXd::Zero(2 * half, highest_derivative + 2);
   t.magnitude = Eigen::MatrixXd::Zero(half, highest_derivative + 2);
   t.momentum = t.momentum_integral = Eigen::VectorXd::Zero(2 * half);
-  for (Eigen::Index n = 0; n < modes; ++n)
+  for (Eigen::Index n = t.bodies; n < modes; ++n)
   {
     const std::complex<double> lambda(-t.decay(n), t.damped(n));
     const double weight = linear.contact_deflection(n);
@@ -237,15 +255,23 @@ void SwitchedMotion::restartIntervalCount()
 
 void SwitchedMotion::rest()
 {
-  state_ = model_->clearance() < 0.0 ? 1 : 0;
+  const double clearance = model_->clearance();
+  const Eigen::Index gap_body = tables_[0].gap_body;
+  state_ = clearance < 0.0 && gap_body < 0 ? 1 : 0;
   Vectors& v = vectors();
   v.displacement = now().standing;
   v.velocity.setZero();
   in_coordinates_ = true;
-  start_acceleration_ = slope_ = time_ = 0.0;
+  start_acceleration_ = slope_ = time_ = farthest_ = 0.0;
   gap_ = now().line_constant;
+  if (clearance < 0.0 && gap_body >= 0)
+  {
+    // A body that nothing holds gives way until the spring no longer pushes it: the surfaces just touch.
+    v.displacement(gap_body) = -clearance / model_->free().contact_deflection(gap_body);
+    gap_ = 0.0;
+  }
   rate_ = bound_ = 0.0;
-  resolution_ = gap_rounding * std::abs(model_->clearance());
+  resolution_ = gap_rounding * std::abs(clearance);
   intervals_ = impacts_ = 0;
   if (state_ == 1)
   {
@@ -303,6 +329,11 @@ void SwitchedMotion::coordinates(Eigen::VectorXd& displacement, Eigen::VectorXd&
   const auto im = v.exponentials.segment(half, modes).array();
   displacement = (t.standing - t.compliance * acceleration(time_) + t.lag * slope_ + re).matrix();
   velocity = (-t.compliance * slope_ - t.decay * re - t.damped * im).matrix();
+  for (Eigen::Index n = 0; n < t.bodies; ++n)
+  {
+    displacement(n) = bodyDisplacement(n, time_);
+    velocity(n) = bodyVelocity(n, time_);
+  }
   if (phasor_)
   {
     const double drive_re = v.exponentials(modes);
@@ -334,8 +365,56 @@ void SwitchedMotion::toExponentials()
     re -= t.transfer_re * drive_re - t.transfer_im * drive_im;
     im += drive_frequency_ * (t.transfer_im * drive_re + t.transfer_re * drive_im);
   }
-  im = -(im + t.decay * re) / t.damped;
+  const Eigen::Index elastic = modes - t.bodies;
+  im.tail(elastic) = -(im.tail(elastic) + t.decay.tail(elastic) * re.tail(elastic)) / t.damped.tail(elastic);
+  body_time_ = time_;
   in_coordinates_ = false;
+}
+
+double SwitchedMotion::bodyDisplacement(Eigen::Index n, double time) const
+{
+  const Eigen::VectorXd& z = vectors().exponentials;
+  const double t = time - body_time_;
+  const double push = linearState(state_).participation(n) * (acceleration(body_time_) / 2.0 + slope_ * t / 6.0);
+  return z(n) + t * (z(z.size() / 2 + n) - t * push);
+}
+
+double SwitchedMotion::bodyVelocity(Eigen::Index n, double time) const
+{
+  const Eigen::VectorXd& z = vectors().exponentials;
+  const double t = time - body_time_;
+  return z(z.size() / 2 + n) - t * linearState(state_).participation(n) * (acceleration(body_time_) + slope_ * t / 2.0);
+}
+
+void SwitchedMotion::moveBodies()
+{
+  Eigen::VectorXd& z = vectors().exponentials;
+  for (Eigen::Index n = 0; n < now().bodies; ++n)
+  {
+    const double displacement = bodyDisplacement(n, time_);
+    z(z.size() / 2 + n) = bodyVelocity(n, time_);
+    z(n) = displacement;
+  }
+  body_time_ = time_;
+}
+
+double SwitchedMotion::bodyEnergy() const
+{
+  const Tables& t = now();
+  const Eigen::VectorXd& z = vectors().exponentials;
+  const Eigen::Index modes = t.decay.size();
+  const Eigen::Index half = z.size() / 2;
+  double sum = 0.0;
+  for (Eigen::Index n = 0; n < t.bodies; ++n)
+  {
+    double velocity = bodyVelocity(n, time_);
+    if (phasor_)
+    {
+      velocity -= drive_frequency_ * (t.transfer_im(n) * z(modes) + t.transfer_re(n) * z(half + modes));
+    }
+    sum += 0.5 * velocity * velocity;
+  }
+  return sum;
 }
 
 double SwitchedMotion::energy() const
@@ -381,17 +460,37 @@ void SwitchedMotion::evaluate(const Eigen::VectorXd& exponentials, double time, 
   const Tables& t = now();
   const Eigen::Index size = exponentials.size();
   gap = lineGap(time) + dot(t.derivative.data() + size, exponentials.data(), size);
-  rate = lineRate() + dot(t.derivative.data() + 2 * size, exponentials.data(), size);
+  rate = lineRate(time) + dot(t.derivative.data() + 2 * size, exponentials.data(), size);
 }
 
 double SwitchedMotion::lineGap(double time) const
 {
-  return now().line_constant - now().line_compliance * acceleration(time) + now().line_lag * slope_;
+  const Tables& t = now();
+  const double line = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_;
+  return t.gap_body < 0
+             ? line
+             : line + linearState(state_).contact_deflection(t.gap_body) * bodyDisplacement(t.gap_body, time);
 }
 
-double SwitchedMotion::lineRate() const
+double SwitchedMotion::lineRate(double time) const
 {
-  return -now().line_compliance * slope_;
+  const Tables& t = now();
+  const double line = -t.line_compliance * slope_;
+  return t.gap_body < 0 ? line
+                        : line + linearState(state_).contact_deflection(t.gap_body) * bodyVelocity(t.gap_body, time);
+}
+
+double SwitchedMotion::derivative(int order) const
+{
+  const Tables& t = now();
+  const double body = order == 2 ? -t.body_pull * acceleration(time_) : order == 3 ? -t.body_pull * slope_ : 0.0;
+  return body + t.derivative.col(order + 1).dot(vectors().exponentials);
+}
+
+double SwitchedMotion::bodyBound(int order) const
+{
+  const double size = std::abs(now().body_pull);
+  return order == 2 ? size * farthest_ : order == 3 ? size * std::abs(slope_) : 0.0;
 }
 
 void SwitchedMotion::evaluate()
@@ -415,10 +514,17 @@ void SwitchedMotion::refreshBound()
 {
   const Tables& t = now();
   bound_ = boundOfDerivative(2);
-  const double farthest = std::max(std::abs(start_acceleration_), std::abs(start_acceleration_ + slope_ * length_));
-  resolution_ =
-      gap_rounding * (std::abs(model_->clearance()) + std::abs(t.line_constant) +
-                      std::abs(t.line_compliance) * farthest + std::abs(t.line_lag * slope_) + boundOfDerivative(0));
+  double terms = std::abs(model_->clearance()) + std::abs(t.line_constant) + std::abs(t.line_compliance) * farthest_ +
+                 std::abs(t.line_lag * slope_) + boundOfDerivative(0);
+  if (t.gap_body >= 0)
+  {
+    const Eigen::VectorXd& z = vectors().exponentials;
+    const double left = length_ - body_time_;
+    terms += std::abs(linearState(state_).contact_deflection(t.gap_body)) *
+                 (std::abs(z(t.gap_body)) + left * std::abs(z(z.size() / 2 + t.gap_body))) +
+             0.5 * left * left * bodyBound(2);
+  }
+  resolution_ = gap_rounding * terms;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -428,7 +534,8 @@ void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
 {
   const double slope = (to - from) * inverse_length_;
   start_acceleration_ = from;
-  time_ = 0.0;
+  farthest_ = std::max(std::abs(from), std::abs(to));
+  time_ = body_time_ = 0.0;
   double change = 0.0;
   if (in_coordinates_)
   {
@@ -448,7 +555,7 @@ void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
 
 void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
 {
-  time_ = 0.0;
+  time_ = body_time_ = 0.0;
   // The phasor starts every cycle anew, so that its rounding cannot add up: a = Re D = -amplitude cos(Omega t).
   for (Vectors& v : vectors_)
   {
@@ -490,7 +597,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
     beginPiece();
   }
   const double distance = side() * gap_;
-  const double reach = distance + side() * rate_ * length_ - 0.5 * bound_ * length_ * length_;
+  const double reach = distance + side() * rate_ * length_ - 0.5 * curvatureBound() * length_ * length_;
   if (distance >= 0.0 && reach >= 0.0)
   {
     const double gap_before = gap_;
@@ -501,7 +608,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
                                          t.derivative.data() + 2 * half, t.derivative.data() + 4 * half, half);
     time_ = length_;
     gap_ = lineGap(time_) + forms.first;
-    rate_ = lineRate() + forms.second;
+    rate_ = lineRate(time_) + forms.second;
     if (state_ == 1)
     {
       watchPeak(0.0, std::int64_t{1} << doublings_, gap_before, rate_before);
@@ -517,6 +624,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
   {
     endPiece();
   }
+  moveBodies();
   ++intervals_;
 }
 
@@ -628,12 +736,11 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
 {
   const double distance = std::max(0.0, side() * gap_);
   const double rate = side() * rate_;
-  double time = earliestZero(distance, rate, bound_);
+  double time = earliestZero(distance, rate, curvatureBound());
   if (onWrongSide())
   {
     // On its way back. The gap makes a switch only where it turns round: a zero of the rate.
-    const double acceleration = now().derivative.col(3).dot(vectors().exponentials);
-    time = earliestZero(rate, side() * acceleration, boundOfDerivative(3));
+    time = earliestZero(rate, side() * derivative(2), boundOfDerivative(3) + bodyBound(3));
   }
   else if (distance <= resolution_ && time < 65536.0 * tick_ && hasNoRate())
   {
@@ -658,8 +765,7 @@ std::int64_t SwitchedMotion::safeTicks(std::int64_t left)
 /// than its rounding error.
 bool SwitchedMotion::hasNoRate() const
 {
-  const double acceleration = now().derivative.col(3).dot(vectors().exponentials);
-  return rate_ * rate_ <= 2.0 * resolution_ * std::max(std::abs(acceleration), derivative_rounding * bound_);
+  return rate_ * rate_ <= 2.0 * resolution_ * std::max(std::abs(derivative(2)), derivative_rounding * curvatureBound());
 }
 
 /// At gap zero with zero velocity the first derivative that is not zero decides: away from contact (no switch) or into
@@ -669,14 +775,15 @@ std::int64_t SwitchedMotion::departureTicks(std::int64_t left)
 {
   for (int order = 2; order <= highest_derivative; ++order)
   {
-    const double derivative = side() * now().derivative.col(order + 1).dot(vectors().exponentials);
-    if (std::abs(derivative) > derivative_rounding * boundOfDerivative(order))
+    const double inward = side() * derivative(order);
+    if (std::abs(inward) > derivative_rounding * (boundOfDerivative(order) + bodyBound(order)))
     {
-      if (derivative < 0.0)
+      if (inward < 0.0)
       {
         return 0;
       }
-      const double ticks = 0.5 * (order + 1) * derivative / (boundOfDerivative(order + 1) * tick_);
+      const double next = boundOfDerivative(order + 1) + bodyBound(order + 1);
+      const double ticks = 0.5 * (order + 1) * inward / (next * tick_);
       return ticks >= static_cast<double>(left)
                  ? left
                  : std::max<std::int64_t>(1, threeHighestBits(static_cast<std::int64_t>(ticks)));
@@ -690,7 +797,7 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   // The motion is past the root by a few ticks; in the conjoined basis a jump of the gap may have put it anywhere.
   const double overrun = gap_ / rate_;
   const double late = overrun > 0.0 && overrun <= most_ticks_through * tick_ ? overrun : 0.0;
-  const double speed = std::abs(rate_ - late * now().derivative.col(3).dot(vectors().exponentials));
+  const double speed = std::abs(rate_ - late * derivative(2));
   if (state_ == 1)
   {
     endPiece();
@@ -777,13 +884,15 @@ void SwitchedMotion::beginEpisode(double offset, double elapsed, double approach
 // J being a linear form. From piece to piece z only changes by the kick of a new slope, so that the forms cancel but
 // for these kicks and the two ends of the episode. The base's work on the structures, W = -integral a q' dt with q =
 // sum Gamma eta, is by parts
-// -[a q] + sum over the pieces of s integral q dt, where again [a q] only counts at the ends of the episode.
+// -[a q] + sum over the pieces of s integral q dt, where again [a q] only counts at the ends of the episode. On bodies
+// that nothing holds the base does the work by which their kinetic energy changes.
 
 void SwitchedMotion::openIntegrals()
 {
   const Tables& t = now();
   const Eigen::VectorXd& z = vectors().exponentials;
   episode_.gap_integral -= dot(t.derivative.data(), z.data(), z.size());
+  episode_.work -= bodyEnergy();
   if (!phasor_)
   {
     episode_.momentum_form = dot(t.momentum_integral.data(), z.data(), z.size());
@@ -795,6 +904,7 @@ void SwitchedMotion::closeIntegrals()
 {
   const Eigen::VectorXd& z = vectors().exponentials;
   episode_.gap_integral += dot(now().derivative.data(), z.data(), z.size());
+  episode_.work += bodyEnergy();
   if (!phasor_)
   {
     episode_.work -= acceleration(time_) * momentum();
@@ -855,7 +965,7 @@ double SwitchedMotion::harmonicWork() const
   const std::complex<double> i_omega(0.0, drive_frequency_);
   std::complex<double> integral = 0.0;  // of (D + D*) q', complex parts as above
   std::complex<double> admittance = 0.0;
-  for (Eigen::Index n = 0; n < modes; ++n)
+  for (Eigen::Index n = t.bodies; n < modes; ++n)
   {
     if (linear.participation(n) == 0.0)
     {

@@ -21,9 +21,14 @@ namespace vibro_impact::core
 ///   Omega^2 + 2 i zeta_n omega_n Omega)
 ///
 /// so that the gap is a straight line and a sum of exponentials,  g = p(t) + Re sum_n w_n z_n,  with the drive's phasor
-/// D as one more exponential. Time inside an interval is counted in ticks, 2^-K of the interval and at most 1e-12 of
-/// the shortest period, and z is advanced by factors exp(lambda tick 2^k) tabulated once: no transcendental function is
-/// evaluated between the switches, nor at them.
+/// D as one more exponential. A coordinate without stiffness, omega_n = 0, is instead
+///
+///   eta_n(t)  = eta_n(0) + eta_n'(0) t - Gamma_n (a_0 t^2/2 + s t^3/6) + Re H_n D,      H_n = Gamma_n/Omega^2
+///
+/// with eta_n' of the polynomial alone, and makes p a cubic if it moves the gap; that can only be one, and in S0. Time
+/// inside an interval is counted in ticks, 2^-K of the interval and at most 1e-12 of the shortest period, and z is
+/// advanced by factors exp(lambda tick 2^k) tabulated once: no transcendental function is evaluated between the
+/// switches, nor at them.
 ///
 /// A switch is found by steps that cannot skip one. If B bounds |g''|, a gap g > 0 with the rate g' cannot reach zero
 /// before
@@ -130,6 +135,9 @@ private:
   /// Everything about one state that the drive's form and the interval fix beforehand.
   struct Tables
   {
+    Eigen::Index bodies = 0;                  // coordinates without stiffness, which come first
+    Eigen::Index gap_body = -1;               // the one of them that moves the gap, or none
+    double body_pull = 0.0;                   // w Gamma of that one
     Eigen::ArrayXd decay, damped;             // -Re lambda, Im lambda, per mode
     Eigen::ArrayXd compliance;                // Gamma/omega^2: quasi-static response to -a
     Eigen::ArrayXd lag;                       // 2 zeta Gamma/omega^3: response to the slope s
@@ -152,7 +160,8 @@ private:
   /// What moves, in the sizes of one state.
   struct Vectors
   {
-    Eigen::VectorXd exponentials;  // [Re z; Im z], each half the modes, the drive's phasor, and padding
+    Eigen::VectorXd exponentials;  // [Re z; Im z], each half the modes, the drive's phasor, and padding; of bodies
+                                   // displacement and velocity of the polynomial part at body_time_
     Eigen::VectorXd before, trial,
         piece;  // exponentials at other times: before a step, on trial, at the start of a piece
     Eigen::VectorXd displacement, velocity;  // eta and eta'
@@ -218,8 +227,22 @@ private:
   void evaluate();
   void evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const;
   double lineGap(double time) const;
-  double lineRate() const;
-  /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own.
+  double lineRate(double time) const;
+  /// The second or a higher derivative of the gap now.
+  double derivative(int order) const;
+  /// Bounds the same derivative of the polynomial p in the present interval.
+  double bodyBound(int order) const;
+  double curvatureBound() const
+  {
+    return bound_ + bodyBound(2);
+  }
+  /// The polynomial part of a coordinate without stiffness.
+  double bodyDisplacement(Eigen::Index n, double time) const;
+  double bodyVelocity(Eigen::Index n, double time) const;
+  void moveBodies();
+  double bodyEnergy() const;
+  /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own,
+  /// but for bodyBound().
   double boundOfDerivative(int order) const;
   double boundOfDerivative(int order, const Eigen::VectorXd& z) const;
   void refreshBound();
@@ -262,7 +285,7 @@ private:
   double tick_ = 0.0;
   int doublings_ = 0;  // K
   std::int64_t switch_limit_ = switch_allowance;
-  double lowest_frequency_ = 0.0;  // rad/s
+  double lowest_frequency_ = 0.0;  // of S1 that moves the gap, rad/s
   double drive_frequency_ = 0.0;
   double drive_amplitude_ = 0.0;
   std::array<Tables, 2> tables_;
@@ -273,9 +296,11 @@ private:
   double time_ = 0.0;  // in the interval
   double start_acceleration_ = 0.0;
   double slope_ = 0.0;
+  double farthest_ = 0.0;   // greatest |a| of the interval
+  double body_time_ = 0.0;  // in the interval
   double gap_ = 0.0;
   double rate_ = 0.0;
-  double bound_ = 0.0;       // B
+  double bound_ = 0.0;       // B, of the exponentials
   double resolution_ = 0.0;  // rounding error of the gap
   std::uint64_t intervals_ = 0;
   std::uint64_t switches_ = 0;

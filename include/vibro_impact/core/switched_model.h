@@ -15,7 +15,9 @@ namespace vibro_impact::core
 /// All arrays have one entry per coordinate.
 struct LinearState
 {
-  Eigen::ArrayXd frequency;           ///< omega_n, rad/s, ascending, > 0
+  /// omega_n, rad/s, ascending, >= 0. Of the coordinates with omega_n = 0, the motions of a free body, at most one
+  /// moves the gap in S0 and none in S1.
+  Eigen::ArrayXd frequency;
   Eigen::ArrayXd damping_ratio;       ///< zeta_n, in [0, 1)
   Eigen::ArrayXd contact_deflection;  ///< b_n in S0, d_n in S1: gap per unit coordinate, kg^-1/2
   Eigen::ArrayXd participation;       ///< Gamma_n, kg^1/2
@@ -37,7 +39,7 @@ public:
   /// A model whose motion is made of the given modes alone, those of both structures in one list: contact_deflection is
   /// the gap per unit coordinate (+phi of structure 1, -phi of structure 2). S1 has the Ritz modes of the same space;
   /// nothing is lost in the mapping. The scales are all 1. Throws std::invalid_argument where there is no mode, a
-  /// frequency is not positive, a number not finite, the stiffness not positive or a damping ratio outside [0, 1).
+  /// frequency is negative, a number not finite, the stiffness not positive or a damping ratio outside [0, 1).
   SwitchedModel(const std::vector<Mode>& modes, const ContactParameters& contact, const DampingParameters& damping);
 
   const ReferenceScales& scales() const
