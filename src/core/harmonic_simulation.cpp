@@ -59,6 +59,14 @@ void HarmonicSimulation::reset()
   implementation_->motion.rest();
 }
 
+void HarmonicSimulation::start(const InitialMotion& motion)
+{
+  Eigen::VectorXd displacement;
+  Eigen::VectorXd velocity;
+  model().freeCoordinates(motion, displacement, velocity);
+  implementation_->motion.start(displacement, velocity);
+}
+
 void HarmonicSimulation::setDrive(double frequency, double acceleration)
 {
   if (!std::isfinite(frequency) || frequency <= 0.0)
@@ -79,6 +87,24 @@ void HarmonicSimulation::advance(std::uint64_t cycles, ImpactSink& sink)
   {
     implementation_->motion.advanceHarmonic(sink);
   }
+}
+
+void HarmonicSimulation::advance(std::uint64_t cycles, ImpactSink& sink, std::size_t samples_per_cycle,
+                                 HistorySample* history)
+{
+  implementation_->motion.recordHistory(history, samples_per_cycle);
+  advance(cycles, sink);
+  implementation_->motion.recordHistory(nullptr, 0);
+}
+
+HistorySample HarmonicSimulation::sample() const
+{
+  return implementation_->motion.sample();
+}
+
+EnergyAccount HarmonicSimulation::energyAccount() const
+{
+  return implementation_->motion.sample().energy;
 }
 
 double HarmonicSimulation::time() const

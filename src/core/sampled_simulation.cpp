@@ -40,6 +40,16 @@ void SampledSimulation::reset(ImpactSink& sink)
   finish(sink);
   implementation_->motion.rest();
   implementation_->samples = 0;
+  implementation_->last_acceleration = 0.0;
+}
+
+void SampledSimulation::start(const InitialMotion& motion, ImpactSink& sink)
+{
+  Eigen::VectorXd displacement;
+  Eigen::VectorXd velocity;
+  model().freeCoordinates(motion, displacement, velocity);
+  reset(sink);
+  implementation_->motion.start(displacement, velocity);
 }
 
 void SampledSimulation::advance(const double* acceleration, std::size_t count, double* gap, double* force,
@@ -61,6 +71,18 @@ void SampledSimulation::advance(const double* acceleration, std::size_t count, d
 void SampledSimulation::finish(ImpactSink& sink)
 {
   implementation_->motion.interrupt(sink);
+}
+
+HistorySample SampledSimulation::sample() const
+{
+  HistorySample sample = implementation_->motion.sample();
+  sample.acceleration = implementation_->last_acceleration;  // the motion has not heard of that of sample 0 yet
+  return sample;
+}
+
+EnergyAccount SampledSimulation::energyAccount() const
+{
+  return implementation_->motion.sample().energy;
 }
 
 std::uint64_t SampledSimulation::samples() const

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include <Eigen/QR>
 
 #include "vibro_impact/core/characteristic_equation.h"
 #include "vibro_impact/core/pinned_beam.h"
@@ -21,6 +24,11 @@ struct SignedStructure
 {
   std::unique_ptr<const Structure> structure;
   double sign;
+
+  int number() const
+  {
+    return sign > 0.0 ? 1 : 2;
+  }
 };
 
 /// One coordinate of the free state: frequency, gap per unit coordinate b = s phi(x_c), participation.
@@ -86,43 +94,87 @@ Residual residual(const Structure& structure, int kept, int orders)
   return result;
 }
 
-/// Coordinates of equal frequency are rotated so that one of them carries the whole motion of the gap and the others
-/// leave it unchanged; any such rotation is as orthogonal as the modes were. What does not move the gap then says so
-/// exactly: two structures that move alike have no rounding noise between them.
-void separateEqualFrequencies(Coordinates& coordinates)
+/// An orthogonal matrix whose first column is the direction of `deflections` and whose second one, with it, spans
+/// `participations`; the other way round where nothing moves the gap.
+Eigen::MatrixXd commonDirections(const Eigen::VectorXd& deflections, const Eigen::VectorXd& participations)
 {
-  std::stable_sort(coordinates.begin(), coordinates.end(),
-                   [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+  const Eigen::Index size = deflections.size();
+  Eigen::MatrixXd wanted(size, 2);
+  wanted.col(0) = deflections.squaredNorm() > 0.0 ? deflections : participations;
+  wanted.col(1) = deflections.squaredNorm() > 0.0 ? participations : deflections;
+  Eigen::MatrixXd directions = Eigen::HouseholderQR<Eigen::MatrixXd>(wanted).householderQ();
+  for (Eigen::Index n = 0; n < 2; ++n)
+  {
+    if (directions.col(n).dot(wanted.col(n)) < 0.0)
+    {
+      directions.col(n) *= -1.0;
+    }
+  }
+  return directions;
+}
+
+/// Coordinates are sorted by frequency, and those of equal frequency rotated so that one of them carries the whole
+/// motion of the gap and the others leave it unchanged; any such rotation is as orthogonal as the modes were. What does
+/// not move the gap then says so exactly: two structures that move alike have no rounding noise between them. Returns
+/// the orthogonal R with  given coordinates = R new coordinates.
+Eigen::MatrixXd separateEqualFrequencies(Coordinates& coordinates)
+{
+  std::vector<std::size_t> order(coordinates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&coordinates](std::size_t a, std::size_t b)
+                   { return coordinates[a].frequency < coordinates[b].frequency; });
+  Coordinates sorted;
+  for (const std::size_t n : order)
+  {
+    sorted.push_back(coordinates[n]);
+  }
+  coordinates = std::move(sorted);
+
+  const auto size = static_cast<Eigen::Index>(coordinates.size());
+  Eigen::MatrixXd rotation = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t first = 0, last = 0; first < coordinates.size(); first = last)
   {
-    double deflection_squared = 0.0;
-    double participation_squared = 0.0;
-    double product = 0.0;
-    const double highest = coordinates[first].frequency * (1.0 + equal_frequencies);
-    for (last = first; last < coordinates.size() && coordinates[last].frequency <= highest; ++last)
+    const double frequency = coordinates[first].frequency;
+    while (last < coordinates.size() && coordinates[last].frequency <= frequency * (1.0 + equal_frequencies))
     {
-      const Mode& mode = coordinates[last];
-      deflection_squared += mode.contact_deflection * mode.contact_deflection;
-      participation_squared += mode.participation * mode.participation;
-      product += mode.contact_deflection * mode.participation;
+      ++last;
     }
-    if (last - first < 2)
+    const auto equal = static_cast<Eigen::Index>(last - first);
+    Eigen::VectorXd deflections(equal);
+    Eigen::VectorXd participations(equal);
+    for (Eigen::Index i = 0; i < equal; ++i)
+    {
+      const Mode& mode = coordinates[first + static_cast<std::size_t>(i)];
+      deflections(i) = mode.contact_deflection;
+      participations(i) = mode.participation;
+    }
+    const Eigen::MatrixXd directions =
+        equal > 1 ? commonDirections(deflections, participations) : Eigen::MatrixXd::Identity(1, 1);
+    for (Eigen::Index i = 0; i < equal; ++i)
+    {
+      rotation.row(static_cast<Eigen::Index>(order[first + static_cast<std::size_t>(i)]))
+          .segment(static_cast<Eigen::Index>(first), equal) = directions.row(i);
+    }
+    if (equal < 2)
     {
       continue;
     }
-    const double deflection = std::sqrt(deflection_squared);
-    const double participation = std::sqrt(participation_squared);
+    const double deflection = deflections.norm();
+    const double participation = participations.norm();
+    const double product = deflections.dot(participations);
     const bool moves_gap = std::abs(product) > common_motion * deflection * participation;
     const double relative = moves_gap ? product / deflection : 0.0;
-    const double common = std::sqrt(std::max(0.0, participation_squared - relative * relative));
+    const double common = std::sqrt(std::max(0.0, participation * participation - relative * relative));
     for (std::size_t i = first; i < last; ++i)
     {
-      coordinates[i] = Mode{coordinates[first].frequency, 0.0, 0.0};
+      coordinates[i] = Mode{frequency, 0.0, 0.0};
     }
     coordinates[first].contact_deflection = deflection;
-    coordinates[first].participation = relative;
-    coordinates[first + 1].participation = common;
+    coordinates[first].participation = deflection > 0.0 ? relative : common;
+    coordinates[first + 1].participation = deflection > 0.0 ? common : 0.0;
   }
+  return rotation;
 }
 
 /// The static deflection of a structure under a unit force at the contact, less its part in the kept modes,
@@ -158,27 +210,42 @@ LinearState makeState(const Coordinates& coordinates, double damping_ratio)
   return state;
 }
 
-/// A mode of the state in contact before it is put in order: its shape in the coordinates of the free state.
+/// A mode of the state in contact: its shape in all free coordinates that it was made of.
 struct ContactMode
 {
   Mode mode;
   Eigen::VectorXd shape;
+  double root = 0.0;  ///< of a mode that moves the gap: x = omega^2, and 1/sqrt(f'(x)), for those free modes that
+  double coefficient = 0.0;  ///< are not among the coordinates: their part is phi_m coefficient/(x - omega_m^2)
 };
 
-/// Sorts, cuts to the lowest `count`, and splits into the linear state and the mapping.
-void assembleContactState(std::vector<ContactMode> modes, std::size_t count, const ContactParameters& spring,
-                          double damping_ratio, LinearState& state, Eigen::MatrixXd& mapping)
+void sortAndCut(std::vector<ContactMode>& modes, std::size_t count)
 {
   std::stable_sort(modes.begin(), modes.end(),
                    [](const ContactMode& a, const ContactMode& b) { return a.mode.frequency < b.mode.frequency; });
   modes.resize(std::min(count, modes.size()));
-  Coordinates coordinates;
-  mapping.resize(modes.front().shape.size(), static_cast<Eigen::Index>(modes.size()));
+}
+
+Eigen::MatrixXd shapes(const std::vector<ContactMode>& modes)
+{
+  Eigen::MatrixXd matrix(modes.front().shape.size(), static_cast<Eigen::Index>(modes.size()));
   for (std::size_t n = 0; n < modes.size(); ++n)
   {
-    coordinates.push_back(modes[n].mode);
-    mapping.col(static_cast<Eigen::Index>(n)) = modes[n].shape;
+    matrix.col(static_cast<Eigen::Index>(n)) = modes[n].shape;
   }
+  return matrix;
+}
+
+/// Splits into the linear state and the mapping from and to the lowest `rows` free coordinates.
+void assembleContactState(const std::vector<ContactMode>& modes, std::size_t rows, const ContactParameters& spring,
+                          double damping_ratio, LinearState& state, Eigen::MatrixXd& mapping)
+{
+  Coordinates coordinates;
+  for (const ContactMode& contact : modes)
+  {
+    coordinates.push_back(contact.mode);
+  }
+  mapping = shapes(modes).topRows(static_cast<Eigen::Index>(rows));
   state = makeState(coordinates, damping_ratio);
   state.preload = -spring.stiffness * spring.clearance * state.contact_deflection;
 }
@@ -218,19 +285,15 @@ PoleData gather(const Coordinates& coordinates, const std::vector<std::size_t>& 
   return data;
 }
 
-std::vector<ContactMode> unchangedModes(const Coordinates& coordinates, std::size_t rows)
+std::vector<ContactMode> unchangedModes(const Coordinates& coordinates)
 {
   std::vector<ContactMode> modes;
   for (std::size_t n = 0; n < coordinates.size(); ++n)
   {
     if (coordinates[n].contact_deflection == 0.0)
     {
-      ContactMode unchanged{coordinates[n], Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows))};
-      if (n < rows)
-      {
-        unchanged.shape(static_cast<Eigen::Index>(n)) = 1.0;
-      }
-      modes.push_back(std::move(unchanged));
+      const auto size = static_cast<Eigen::Index>(coordinates.size());
+      modes.push_back(ContactMode{coordinates[n], Eigen::VectorXd::Unit(size, static_cast<Eigen::Index>(n))});
     }
   }
   return modes;
@@ -270,7 +333,7 @@ std::vector<ContactMode> ritzModes(const Coordinates& coordinates, double stiffn
     deflections(m) = std::copysign(std::sqrt(square), data.deflections(m));
   }
 
-  std::vector<ContactMode> modes = unchangedModes(coordinates, coordinates.size());
+  std::vector<ContactMode> modes = unchangedModes(coordinates);
   for (Eigen::Index n = 0; n < size; ++n)
   {
     const Eigen::ArrayXd quotient = deflections / distances.col(n);
@@ -330,17 +393,34 @@ Coordinates lowestModes(const std::vector<SignedStructure>& structures, std::siz
   return coordinates;
 }
 
+/// What conjoined modes are made of.
+struct ConjoinedSpace
+{
+  Coordinates coordinates;           ///< of the free state, not yet cut to the basis
+  Eigen::MatrixXd rotation;          ///< of separateEqualFrequencies()
+  std::vector<StructureMode> modes;  ///< its rows
+  std::vector<Residual> residuals;   ///< what the modes above do, one for each structure
+};
+
 /// The conjoined modes: dynamic Green's functions of both structures at the roots of the characteristic equation, all
 /// modes included.
 std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& structures, std::size_t count,
-                                        std::size_t rows, double stiffness, Coordinates& coordinates)
+                                        std::size_t rows, double stiffness, ConjoinedSpace& space)
 {
+  Coordinates& coordinates = space.coordinates;
   // Each root lies below the pole above it, so that `count` modes in contact lie below the free mode `count` + 2 that
   // moves the gap; at a contact with nodes every other mode may not. Modes above four times that frequency enter as a
   // power series in omega^2 whose terms fall by 16 each.
   std::vector<int> kept;
   coordinates = lowestModes(structures, 2 * std::max(count, rows) + 2, 4.0, kept);
-  separateEqualFrequencies(coordinates);
+  for (std::size_t i = 0; i < structures.size(); ++i)
+  {
+    for (int m = 1; m <= kept[i]; ++m)
+    {
+      space.modes.push_back({structures[i].number(), m});
+    }
+  }
+  space.rotation = separateEqualFrequencies(coordinates);
   constexpr int orders = 16;
   std::vector<double> receptance(orders, 0.0);
   std::vector<double> base_response(orders, 0.0);
@@ -352,6 +432,7 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
       receptance[order] += rest.receptance[order];
       base_response[order] += structures[i].sign * rest.base_response[order];
     }
+    space.residuals.push_back(rest);
   }
 
   const std::vector<std::size_t> indices = gapCoordinates(coordinates);
@@ -359,20 +440,22 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
   const CharacteristicEquation equation(stiffness, data.poles, data.deflections, receptance);
   const Eigen::Index roots = std::min(equation.rootCount(), static_cast<Eigen::Index>(count));
 
-  std::vector<ContactMode> modes = unchangedModes(coordinates, rows);
+  std::vector<ContactMode> modes = unchangedModes(coordinates);
   for (Eigen::Index n = 0; n < roots; ++n)
   {
     const CharacteristicEquation::Root root = equation.root(n);
     const double norm = std::sqrt(equation.slope(root));
     const Eigen::ArrayXd distances = equation.distances(root);
-    ContactMode contact{Mode{}, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rows))};
-    contact.mode.frequency = std::sqrt(equation.value(root));
+    ContactMode contact{Mode{}, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(coordinates.size()))};
+    contact.root = equation.value(root);
+    contact.coefficient = 1.0 / norm;
+    contact.mode.frequency = std::sqrt(contact.root);
     contact.mode.contact_deflection = 1.0 / (stiffness * norm);
     // Gamma_n = sum_m T_mn Gamma_m over all free modes
     contact.mode.participation = -((data.deflections * data.participations / distances).sum() +
                                    evaluatePolynomial(base_response, equation.value(root))) /
                                  norm;
-    for (std::size_t i = 0; i < indices.size() && indices[i] < rows; ++i)
+    for (std::size_t i = 0; i < indices.size(); ++i)
     {
       const auto m = static_cast<Eigen::Index>(i);
       contact.shape(static_cast<Eigen::Index>(indices[i])) = -data.deflections(m) / (norm * distances(m));
@@ -380,6 +463,73 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
     modes.push_back(std::move(contact));
   }
   return modes;
+}
+/// R_i^T R_i of the rows of R that belong to one structure.
+Eigen::MatrixXd projection(const Eigen::MatrixXd& rotation, const std::vector<StructureMode>& modes, int structure)
+{
+  Eigen::MatrixXd rows = rotation;
+  for (std::size_t row = 0; row < modes.size(); ++row)
+  {
+    if (modes[row].structure != structure)
+    {
+      rows.row(static_cast<Eigen::Index>(row)).setZero();
+    }
+  }
+  return rows.transpose() * rows;
+}
+
+/// The energy of one structure in states whose coordinates have the given shapes in those of S0.
+StructureEnergy structureEnergy(const Eigen::MatrixXd& projection, const Eigen::ArrayXd& frequency,
+                                const Eigen::MatrixXd& shapes)
+{
+  // Only coordinates of equal frequency share a structure's mode, so that the frequencies commute with the projection.
+  const Eigen::MatrixXd strain = projection * frequency.square().matrix().asDiagonal();
+  return {shapes.transpose() * projection * shapes, shapes.transpose() * strain * shapes};
+}
+
+/// sum_{a + b = order} x^a y^b
+double completeSymmetric(double x, double y, std::size_t order)
+{
+  double sum = 1.0;
+  double power = 1.0;
+  for (std::size_t n = 0; n < order; ++n)
+  {
+    power *= y;
+    sum = sum * x + power;
+  }
+  return sum;
+}
+
+/// Adds the modes above those that the conjoined modes list one by one. With r_j = sum phi^2/omega^(2 j + 2) over them
+///   sum phi^2/((omega^2 - x)(omega^2 - y))         = sum_j r_(j+1) h_j(x, y),    h_j = sum_{a + b = j} x^a y^b
+///   sum phi^2 omega^2/((omega^2 - x)(omega^2 - y)) = sum_j r_j h_j(x, y)
+void addResidual(StructureEnergy& energy, const std::vector<double>& receptance, const std::vector<ContactMode>& modes)
+{
+  for (std::size_t n = 0; n < modes.size(); ++n)
+  {
+    for (std::size_t m = 0; m < modes.size(); ++m)
+    {
+      const double factor = modes[n].coefficient * modes[m].coefficient;
+      const auto row = static_cast<Eigen::Index>(n);
+      const auto column = static_cast<Eigen::Index>(m);
+      for (std::size_t j = receptance.size(); factor != 0.0 && j-- > 0;)  // small terms first
+      {
+        const double term = factor * receptance[j];
+        energy.strain(row, column) += term * completeSymmetric(modes[n].root, modes[m].root, j);
+        energy.kinetic(row, column) += j > 0 ? term * completeSymmetric(modes[n].root, modes[m].root, j - 1) : 0.0;
+      }
+    }
+  }
+}
+
+Eigen::ArrayXd frequencies(const Coordinates& coordinates)
+{
+  Eigen::ArrayXd result(static_cast<Eigen::Index>(coordinates.size()));
+  for (std::size_t n = 0; n < coordinates.size(); ++n)
+  {
+    result(static_cast<Eigen::Index>(n)) = coordinates[n].frequency;
+  }
+  return result;
 }
 }  // namespace
 
@@ -393,11 +543,29 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
   {
     const auto rows = static_cast<std::size_t>(conjoined->modes_free);
     const auto columns = static_cast<std::size_t>(conjoined->modes_contact);
-    Coordinates coordinates;
-    std::vector<ContactMode> modes = conjoinedModes(structures, columns, rows, spring_.stiffness, coordinates);
-    coordinates.resize(rows);
-    free_ = makeState(coordinates, parameters.damping.free);
-    assembleContactState(std::move(modes), columns, spring_, parameters.damping.contact, contact_, mapping_);
+    ConjoinedSpace space;
+    std::vector<ContactMode> modes = conjoinedModes(structures, columns, rows, spring_.stiffness, space);
+    sortAndCut(modes, columns);
+    const Eigen::ArrayXd frequency = frequencies(space.coordinates);
+    const auto free_size = static_cast<Eigen::Index>(rows);
+    const Eigen::MatrixXd all_free = Eigen::MatrixXd::Identity(frequency.size(), free_size);
+    for (int structure = 1; structure <= 2; ++structure)
+    {
+      const Eigen::MatrixXd projected = projection(space.rotation, space.modes, structure);
+      const auto index = static_cast<std::size_t>(structure - 1);
+      free_energy_[index] = structureEnergy(projected, frequency, all_free);
+      contact_energy_[index] = structureEnergy(projected, frequency, shapes(modes));
+    }
+    for (std::size_t i = 0; i < structures.size(); ++i)
+    {
+      const auto index = static_cast<std::size_t>(structures[i].number() - 1);
+      addResidual(contact_energy_[index], space.residuals[i].receptance, modes);
+    }
+    space.coordinates.resize(rows);
+    free_ = makeState(space.coordinates, parameters.damping.free);
+    assembleContactState(modes, rows, spring_, parameters.damping.contact, contact_, mapping_);
+    structure_modes_ = std::move(space.modes);
+    structure_coordinates_ = space.rotation.leftCols(free_size);
   }
   else
   {
@@ -408,8 +576,10 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
       for (int m = 1; m <= modes_per_beam; ++m)
       {
         coordinates.push_back(gapMode(side, m));
+        structure_modes_.push_back({side.number(), m});
       }
       coordinates.push_back(attachmentShape(side, modes_per_beam));
+      structure_modes_.push_back({side.number(), 0});
     }
     buildFromSpace(std::move(coordinates), parameters.damping);
   }
@@ -451,15 +621,69 @@ SwitchedModel::SwitchedModel(const std::vector<Mode>& modes, const ContactParame
       refuse("damping ratio", ratio, "from 0 to below 1");
     }
   }
+  for (std::size_t n = 0; n < modes.size(); ++n)
+  {
+    structure_modes_.push_back({1, static_cast<int>(n) + 1});
+  }
   buildFromSpace(modes, damping);
 }
 
 void SwitchedModel::buildFromSpace(std::vector<Mode> coordinates, const DampingParameters& damping)
 {
-  separateEqualFrequencies(coordinates);
+  structure_coordinates_ = separateEqualFrequencies(coordinates);
   free_ = makeState(coordinates, damping.free);
-  assembleContactState(ritzModes(coordinates, spring_.stiffness), coordinates.size(), spring_, damping.contact,
-                       contact_, mapping_);
+  std::vector<ContactMode> modes = ritzModes(coordinates, spring_.stiffness);
+  sortAndCut(modes, modes.size());
+  assembleContactState(modes, coordinates.size(), spring_, damping.contact, contact_, mapping_);
+  const Eigen::MatrixXd all_free = Eigen::MatrixXd::Identity(free_.size(), free_.size());
+  for (int structure = 1; structure <= 2; ++structure)
+  {
+    const Eigen::MatrixXd projected = projection(structure_coordinates_, structure_modes_, structure);
+    const auto index = static_cast<std::size_t>(structure - 1);
+    free_energy_[index] = structureEnergy(projected, free_.frequency, all_free);
+    contact_energy_[index] = structureEnergy(projected, free_.frequency, mapping_);
+  }
+  lossless_ = true;
+}
+
+void SwitchedModel::freeCoordinates(const InitialMotion& motion, Eigen::VectorXd& displacement,
+                                    Eigen::VectorXd& velocity) const
+{
+  const auto transform = [this](const std::vector<double>& first, const std::vector<double>& second,
+                                const std::string& quantity) -> Eigen::VectorXd
+  {
+    Eigen::VectorXd own = Eigen::VectorXd::Zero(structure_coordinates_.rows());
+    int structure = 0;
+    for (const std::vector<double>* values : {&first, &second})
+    {
+      ++structure;
+      for (std::size_t i = 0; i < values->size(); ++i)
+      {
+        const int number = static_cast<int>(i) + 1;
+        const std::string name = "initial " + quantity + " of structure " + std::to_string(structure) + ", mode " +
+                                 std::to_string(number) + ": " + std::to_string((*values)[i]);
+        if (!std::isfinite((*values)[i]))
+        {
+          throw std::invalid_argument(name + "; allowed: finite");
+        }
+        const auto found = std::find_if(structure_modes_.begin(), structure_modes_.end(),
+                                        [&](const StructureMode& mode)
+                                        { return mode.structure == structure && mode.number == number; });
+        const Eigen::Index row = found - structure_modes_.begin();
+        if (found == structure_modes_.end() || structure_coordinates_.row(row).isZero(0.0))
+        {
+          throw std::invalid_argument(
+              name + "; allowed: " + (i == 0 ? "none, it has no modes" : "modes 1 to " + std::to_string(i)) +
+              " in this basis");
+        }
+        own(row) = (*values)[i];
+      }
+    }
+    return structure_coordinates_.transpose() * own;
+  };
+  Eigen::VectorXd displaced = transform(motion.structure1.displacement, motion.structure2.displacement, "displacement");
+  velocity = transform(motion.structure1.velocity, motion.structure2.velocity, "velocity");
+  displacement = std::move(displaced);
 }
 
 Eigen::ArrayXd SwitchedModel::mappingLoss() const

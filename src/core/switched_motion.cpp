@@ -59,7 +59,7 @@ SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool 
     const Eigen::Index modes = linearState(state).size();
     const Eigen::Index half = padded(modes + (phasor_ ? 1 : 0));
     Vectors& v = vectors_[static_cast<std::size_t>(state)];
-    v.exponentials = v.before = v.trial = v.piece = Eigen::VectorXd::Zero(2 * half);
+    v.exponentials = v.before = v.trial = v.piece = v.history = Eigen::VectorXd::Zero(2 * half);
     v.displacement = v.velocity = Eigen::VectorXd::Zero(modes);
     tabulate(state);
   }
@@ -280,6 +280,12 @@ void SwitchedMotion::rest()
   }
 }
 
+void SwitchedMotion::start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
+{
+  rest();
+  setFreeCoordinates(displacement, velocity);
+}
+
 void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
 {
   state_ = 0;
@@ -301,13 +307,13 @@ void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, con
   }
 }
 
-double SwitchedMotion::force() const
+double SwitchedMotion::force(double gap) const
 {
-  if (state_ == 0 || (gap_ > 0.0 && gap_ <= resolution_))
+  if (state_ == 0 || (gap > 0.0 && gap <= resolution_))
   {
     return 0.0;
   }
-  return -model_->stiffness() * gap_;
+  return -model_->stiffness() * gap;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -322,22 +328,28 @@ void SwitchedMotion::coordinates(Eigen::VectorXd& displacement, Eigen::VectorXd&
     velocity = v.velocity;
     return;
   }
+  coordinates(v.exponentials, time_, displacement, velocity);
+}
+
+void SwitchedMotion::coordinates(const Eigen::VectorXd& exponentials, double time, Eigen::VectorXd& displacement,
+                                 Eigen::VectorXd& velocity) const
+{
   const Tables& t = now();
   const Eigen::Index modes = t.decay.size();
-  const Eigen::Index half = v.exponentials.size() / 2;
-  const auto re = v.exponentials.head(modes).array();
-  const auto im = v.exponentials.segment(half, modes).array();
-  displacement = (t.standing - t.compliance * acceleration(time_) + t.lag * slope_ + re).matrix();
+  const Eigen::Index half = exponentials.size() / 2;
+  const auto re = exponentials.head(modes).array();
+  const auto im = exponentials.segment(half, modes).array();
+  displacement = (t.standing - t.compliance * acceleration(time) + t.lag * slope_ + re).matrix();
   velocity = (-t.compliance * slope_ - t.decay * re - t.damped * im).matrix();
   for (Eigen::Index n = 0; n < t.bodies; ++n)
   {
-    displacement(n) = bodyDisplacement(n, time_);
-    velocity(n) = bodyVelocity(n, time_);
+    displacement(n) = bodyDisplacement(n, time);
+    velocity(n) = bodyVelocity(n, time);
   }
   if (phasor_)
   {
-    const double drive_re = v.exponentials(modes);
-    const double drive_im = v.exponentials(half + modes);
+    const double drive_re = exponentials(modes);
+    const double drive_im = exponentials(half + modes);
     displacement.array() += t.transfer_re * drive_re - t.transfer_im * drive_im;
     velocity.array() -= drive_frequency_ * (t.transfer_im * drive_re + t.transfer_re * drive_im);
   }
@@ -581,6 +593,88 @@ void SwitchedMotion::startFromCoordinates()
   }
 }
 
+// ---------------------------------------------------------------------------------------------------------------------
+// The history
+
+HistorySample SwitchedMotion::sample() const
+{
+  Eigen::VectorXd displacement;
+  Eigen::VectorXd velocity;
+  coordinates(displacement, velocity);
+  HistorySample sample;
+  describe(0.0, gap_, rate_, displacement, velocity, sample);
+  sample.acceleration = phasor_ ? -drive_amplitude_ : acceleration(time_);
+  return sample;
+}
+
+void SwitchedMotion::describe(double time, double gap, double rate, const Eigen::VectorXd& displacement,
+                              const Eigen::VectorXd& velocity, HistorySample& sample) const
+{
+  sample.time = static_cast<double>(intervals_) * length_ + time;
+  sample.gap = gap;
+  sample.gap_velocity = rate;
+  sample.force = force(gap);
+  sample.in_contact = inContact();
+  storeEnergy(displacement, velocity, gap, sample.energy);
+}
+
+void SwitchedMotion::storeEnergy(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity, double gap,
+                                 EnergyAccount& account) const
+{
+  const auto energy = [&](int structure)
+  {
+    const StructureEnergy& share = state_ == 0 ? model_->freeEnergy(structure) : model_->contactEnergy(structure);
+    return share.energy(displacement, velocity);
+  };
+  account.structure1 = energy(1);
+  account.structure2 = energy(2);
+  account.spring = state_ == 0 ? 0.0 : 0.5 * model_->stiffness() * gap * gap;
+}
+
+void SwitchedMotion::recordHistory(HistorySample* samples, std::size_t per_interval)
+{
+  history_ = samples;
+  history_size_ = per_interval;
+}
+
+void SwitchedMotion::beginHistoryPiece()
+{
+  vectors().history = vectors().exponentials;
+  history_start_ = time_;
+}
+
+void SwitchedMotion::takeHistory()
+{
+  Vectors& v = vectors();
+  const auto sampleTime = [this](std::size_t number)
+  { return length_ * (static_cast<double>(number) / static_cast<double>(history_size_)); };
+  for (; history_taken_ + 1 < history_size_ && sampleTime(history_taken_ + 1) <= time_; ++history_taken_)
+  {
+    const double time = sampleTime(history_taken_ + 1);
+    v.trial = v.history;
+    rotateTicks(v.trial, static_cast<std::int64_t>(std::llround((time - history_start_) / tick_)));
+    HistorySample& sample = *history_++;
+    double gap = 0.0;
+    double rate = 0.0;
+    evaluate(v.trial, time, gap, rate);
+    coordinates(v.trial, time, v.displacement, v.velocity);
+    describe(time, gap, rate, v.displacement, v.velocity, sample);
+    sample.acceleration = v.trial(v.displacement.size());
+  }
+}
+
+void SwitchedMotion::endHistoryInterval()
+{
+  Vectors& v = vectors();
+  HistorySample& sample = *history_++;
+  coordinates(v.exponentials, time_, v.displacement, v.velocity);
+  describe(0.0, gap_, rate_, v.displacement, v.velocity, sample);
+  sample.acceleration = -drive_amplitude_;
+  history_taken_ = 0;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
 void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
 {
   Vectors& v = vectors();
@@ -595,6 +689,10 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
       episode_.momentum_form += slope_change * t.kick_momentum_integral;
     }
     beginPiece();
+  }
+  if (history_ != nullptr)
+  {
+    beginHistoryPiece();
   }
   const double distance = side() * gap_;
   const double reach = distance + side() * rate_ * length_ - 0.5 * curvatureBound() * length_ * length_;
@@ -624,8 +722,16 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
   {
     endPiece();
   }
+  if (history_ != nullptr)
+  {
+    takeHistory();
+  }
   moveBodies();
   ++intervals_;
+  if (history_ != nullptr)
+  {
+    endHistoryInterval();
+  }
 }
 
 /// Moves on by `ticks` from `time`, and watches the peak of the force on the way.
@@ -805,6 +911,10 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
     episode_.elapsed -= late;
     episode_.impact.separation_speed = speed;
   }
+  if (history_ != nullptr)
+  {
+    takeHistory();
+  }
   const Vectors& from = vectors();
   toCoordinates();
   const double energy_before = energy(state_, from.displacement, from.velocity);
@@ -831,6 +941,10 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   toExponentials();
   evaluate();
   refreshBound();
+  if (history_ != nullptr)
+  {
+    beginHistoryPiece();
+  }
   ++switches_;
   if (state_ == 1)
   {

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
 #include <Eigen/Core>
 
+#include "vibro_impact/core/energy_account.h"
+#include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
 #include "vibro_impact/core/switched_model.h"
 
@@ -66,6 +69,9 @@ public:
   /// Static equilibrium without base acceleration; impact numbers start anew.
   void rest();
 
+  /// The same for a given motion, in the coordinates of S0.
+  void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
+
   /// Advances over one interval in which the base acceleration goes from `from` to `to` in a straight line.
   void advanceLinear(double from, double to, ImpactSink& sink);
 
@@ -75,12 +81,22 @@ public:
   /// Reports an open episode as cut short, now.
   void interrupt(ImpactSink& sink);
 
+  /// Now.
+  HistorySample sample() const;
+
+  /// From now on (until nullptr is given) every interval of the harmonic drive writes `per_interval` equally spaced
+  /// samples, the last at its end. They are taken from copies, and the motion is the same bit for bit.
+  void recordHistory(HistorySample* samples, std::size_t per_interval);
+
   double gap() const
   {
     return gap_;
   }
   /// The contact force now, N: -k g in S1. A gap within its rounding error of zero exerts no force.
-  double force() const;
+  double force() const
+  {
+    return force(gap_);
+  }
   bool inContact() const
   {
     return state_ == 1;
@@ -163,7 +179,8 @@ private:
     Eigen::VectorXd exponentials;  // [Re z; Im z], each half the modes, the drive's phasor, and padding; of bodies
                                    // displacement and velocity of the polynomial part at body_time_
     Eigen::VectorXd before, trial,
-        piece;  // exponentials at other times: before a step, on trial, at the start of a piece
+        piece;                // exponentials at other times: before a step, on trial, at the start of a piece
+    Eigen::VectorXd history;  // exponentials at history_start_
     Eigen::VectorXd displacement, velocity;  // eta and eta'
   };
 
@@ -247,6 +264,17 @@ private:
   double boundOfDerivative(int order, const Eigen::VectorXd& z) const;
   void refreshBound();
 
+  double force(double gap) const;
+  void describe(double time, double gap, double rate, const Eigen::VectorXd& displacement,
+                const Eigen::VectorXd& velocity, HistorySample& sample) const;
+  void storeEnergy(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity, double gap,
+                   EnergyAccount& account) const;
+  void beginHistoryPiece();
+  void takeHistory();
+  void endHistoryInterval();
+
+  void coordinates(const Eigen::VectorXd& exponentials, double time, Eigen::VectorXd& displacement,
+                   Eigen::VectorXd& velocity) const;
   void toCoordinates();
   void toExponentials();
   double energy(int state, const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const;
@@ -309,6 +337,10 @@ private:
   std::uint64_t peak_evaluations_ = 0;
   std::uint64_t impacts_ = 0;
   Episode episode_;
+  HistorySample* history_ = nullptr;  // where the next sample goes, if anywhere
+  std::size_t history_size_ = 0;      // samples an interval
+  std::size_t history_taken_ = 0;     // of this interval
+  double history_start_ = 0.0;        // start of the piece from which samples are taken, time in the interval
 };
 
 }  // namespace vibro_impact::core

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -7,6 +8,7 @@
 #include "vibro_impact/core/initial_motion.h"
 #include "vibro_impact/core/parameters.h"
 #include "vibro_impact/core/structure.h"
+#include "vibro_impact/core/structure_energy.h"
 
 namespace vibro_impact::core
 {
@@ -29,6 +31,13 @@ struct LinearState
   }
 };
 
+/// A mode of one structure on its own.
+struct StructureMode
+{
+  int structure = 1;  ///< 1 or 2
+  int number = 0;     ///< as in Structure::mode(); 0: the attachment shape
+};
+
 /// The immutable switched model: two linear states, the mapping between them, and the contact. Safe to share.
 class SwitchedModel
 {
@@ -38,7 +47,9 @@ public:
 
   /// A model whose motion is made of the given modes alone, those of both structures in one list: contact_deflection is
   /// the gap per unit coordinate (+phi of structure 1, -phi of structure 2). S1 has the Ritz modes of the same space;
-  /// nothing is lost in the mapping. The scales are all 1. Throws std::invalid_argument where there is no mode, a
+  /// nothing is lost in the mapping. As no one says which structure they belong to, all of them are taken for modes 1,
+  /// 2,
+  /// ... of structure 1. The scales are all 1. Throws std::invalid_argument where there is no mode, a
   /// frequency is negative, a number not finite, the stiffness not positive or a damping ratio outside [0, 1).
   SwitchedModel(const std::vector<Mode>& modes, const ContactParameters& contact, const DampingParameters& damping);
 
@@ -69,6 +80,22 @@ public:
   /// basis.
   Eigen::ArrayXd mappingLoss() const;
 
+  /// Whether both states live in one space, as in the attachment basis, so that a switch loses nothing.
+  bool lossless() const
+  {
+    return lossless_;
+  }
+
+  /// The energy of structure 1 or 2 in the coordinates of S0 and of S1.
+  const StructureEnergy& freeEnergy(int structure) const
+  {
+    return free_energy_.at(static_cast<std::size_t>(structure - 1));
+  }
+  const StructureEnergy& contactEnergy(int structure) const
+  {
+    return contact_energy_.at(static_cast<std::size_t>(structure - 1));
+  }
+
   /// Displacement and velocity of the S0 coordinates (free().size() each) in the given motion. Throws
   /// std::invalid_argument for a mode that the basis does not have, and for a value that is not finite; the message
   /// names both.
@@ -91,6 +118,11 @@ private:
   LinearState free_;
   LinearState contact_;
   Eigen::MatrixXd mapping_;
+  bool lossless_ = false;
+  std::vector<StructureMode> structure_modes_;  // of both structures
+  Eigen::MatrixXd structure_coordinates_;       // theirs = this matrix times those of S0; its columns are orthonormal
+  std::array<StructureEnergy, 2> free_energy_;
+  std::array<StructureEnergy, 2> contact_energy_;
 };
 
 }  // namespace vibro_impact::core
