@@ -143,10 +143,10 @@ def measure_harmonic(rows):
 
 
 def measure_doubling(rows):
-    """Where, with omega* in 2.2 to 2.6, the first row of period two follows one of period one."""
+    """Where, with omega* in 2.2 to 2.6, the first row of period two follows one of period one; without impacts there is none."""
     last_single = None
     for row in rows:
-        if not 2.2 <= row.omega_star <= 2.6:
+        if not 2.2 <= row.omega_star <= 2.6 or row.impacts == 0:
             continue
         if row.period == 1:
             last_single = row.omega_star

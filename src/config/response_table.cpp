@@ -42,6 +42,9 @@ const std::vector<Column<ResponseRow>> response_columns = {
     {"impulse_per_cycle", &ResponseRow::impulse_per_cycle},
     {"peak_force", &ResponseRow::peak_force},
     {"duration_mean", &ResponseRow::duration_mean},
+    {"contact_share", &ResponseRow::contact_share},
+    {"stiffness", &ResponseRow::stiffness},
+    {"clearance", &ResponseRow::clearance},
 };
 
 const std::vector<Column<ImpactRow>> impact_columns = {

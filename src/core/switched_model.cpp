@@ -248,6 +248,21 @@ void assembleContactState(const std::vector<ContactMode>& modes, std::size_t row
   mapping = shapes(modes).topRows(static_cast<Eigen::Index>(rows));
   state = makeState(coordinates, damping_ratio);
   state.preload = -spring.stiffness * spring.clearance * state.contact_deflection;
+  state.gap = spring.clearance;
+}
+
+/// How far the conjoined modes that are left out open the gap under a unit force on it, m/N: what the structures yield
+/// with the spring between them, alpha/(1 + k alpha) = sum d_n^2/omega_n^2 over all modes, less the part of those kept.
+double leftOutCompliance(const std::vector<SignedStructure>& structures, const LinearState& kept, double stiffness)
+{
+  double receptance = 0.0;
+  for (const SignedStructure& side : structures)
+  {
+    receptance += side.structure->staticReceptance(0);
+  }
+  const Eigen::ArrayXd compliance =
+      (kept.contact_deflection != 0.0).select((kept.contact_deflection / kept.frequency).square(), 0.0);
+  return 1.0 / (1.0 / receptance + stiffness) - compliance.sum();
 }
 
 /// Where in `coordinates` those are that move the gap; the others keep frequency and shape in both states.
@@ -566,6 +581,8 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
     assembleContactState(modes, rows, spring_, parameters.damping.contact, contact_, mapping_);
     structure_modes_ = std::move(space.modes);
     structure_coordinates_ = space.rotation.leftCols(free_size);
+    contact_.gap *= 1.0 - spring_.stiffness * leftOutCompliance(structures, contact_, spring_.stiffness);
+    free_.gap = spring_.clearance;
   }
   else
   {
@@ -632,6 +649,7 @@ void SwitchedModel::buildFromSpace(std::vector<Mode> coordinates, const DampingP
 {
   structure_coordinates_ = separateEqualFrequencies(coordinates);
   free_ = makeState(coordinates, damping.free);
+  free_.gap = spring_.clearance;
   std::vector<ContactMode> modes = ritzModes(coordinates, spring_.stiffness);
   sortAndCut(modes, modes.size());
   assembleContactState(modes, coordinates.size(), spring_, damping.contact, contact_, mapping_);

@@ -96,7 +96,7 @@ void SwitchedMotion::tabulate(int state)
     }
   }
 
-  t.line_constant = model_->clearance() + (linear.contact_deflection * t.standing).sum();
+  t.line_constant = linear.gap + (linear.contact_deflection * t.standing).sum();
   if (state == 1 && tables_[0].gap_body >= 0)
   {
     t.line_constant = 0.0;  // nothing presses a free body against the spring
@@ -224,14 +224,7 @@ void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
       }
     }
   }
-  if (!in_coordinates_)
-  {
-    if (state_ == 1)
-    {
-      closeIntegrals();
-    }
-    toCoordinates();
-  }
+  leaveExponentials();
   drive_frequency_ = frequency;
   drive_amplitude_ = amplitude;
   setInterval(two_pi / frequency);
@@ -239,7 +232,6 @@ void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
   {
     tabulatePhasor(state);
   }
-  in_coordinates_ = true;
   restartIntervalCount();
 }
 
@@ -273,6 +265,7 @@ void SwitchedMotion::rest()
   rate_ = bound_ = 0.0;
   resolution_ = gap_rounding * std::abs(clearance);
   intervals_ = impacts_ = 0;
+  contact_time_ = 0.0;
   if (state_ == 1)
   {
     beginEpisode(0.0, 0.0, 0.0, energy());
@@ -284,6 +277,80 @@ void SwitchedMotion::start(const Eigen::VectorXd& displacement, const Eigen::Vec
 {
   rest();
   setFreeCoordinates(displacement, velocity);
+}
+
+void SwitchedMotion::takeOver(SwitchedMotion& previous, ImpactSink& sink)
+{
+  previous.leaveExponentials();
+  const SwitchedModel& before = *previous.model_;
+  const Vectors& from = previous.vectors();
+  gap_ = previous.gap_ + (linearState(previous.state_).gap - previous.linearState(previous.state_).gap);
+  rate_ = previous.rate_;
+  time_ = previous.time_;
+  start_acceleration_ = previous.start_acceleration_;
+  slope_ = previous.slope_;
+  farthest_ = previous.farthest_;
+  resolution_ = previous.resolution_ + gap_rounding * (std::abs(before.clearance()) + std::abs(model_->clearance()));
+  intervals_ = previous.intervals_;
+  switches_ = previous.switches_;
+  switch_limit_reached_ = previous.switch_limit_reached_;
+  steps_total_ = previous.steps_total_;
+  peak_evaluations_ = previous.peak_evaluations_;
+  contact_time_ = previous.contact_time_;
+
+  // Within its rounding of zero the gap decides nothing.
+  state_ = std::abs(gap_) <= resolution_ ? previous.state_ : (gap_ < 0.0 ? 1 : 0);
+  Vectors& to = vectors();
+  const bool same_modes = model_->stiffness() == before.stiffness() && linearState(1).size() == before.contact().size();
+  const auto map = [](const auto& matrix, const Vectors& source, Vectors& result)
+  {
+    result.displacement.noalias() = matrix * source.displacement;
+    result.velocity.noalias() = matrix * source.velocity;
+  };
+  if (previous.state_ == 0 && state_ == 1)
+  {
+    map(model_->mapping().transpose(), from, to);
+  }
+  else if (previous.state_ == 1 && state_ == 0)
+  {
+    map(before.mapping(), from, to);
+  }
+  else if (state_ == 1 && !same_modes)
+  {
+    map(before.mapping(), from, vectors_[0]);
+    map(model_->mapping().transpose(), vectors_[0], to);
+  }
+  else
+  {
+    to.displacement = from.displacement;
+    to.velocity = from.velocity;
+  }
+  in_coordinates_ = true;
+
+  if (previous.state_ == 1 && state_ == 0)
+  {
+    previous.episode_.impact.cut_short = true;
+    previous.endEpisode(sink, previous.energy(1, from.displacement, from.velocity));
+  }
+  impacts_ = previous.impacts_;
+  if (state_ == 0)
+  {
+    return;
+  }
+  if (previous.state_ == 0)
+  {
+    beginEpisode(0.0, 0.0, 0.0, energy(1, to.displacement, to.velocity));
+    episode_.impact.cut_short = true;
+    return;
+  }
+  // The episode goes on under another force. What the change puts into the spring is none of its losses.
+  previous.closeForce();
+  episode_ = previous.episode_;
+  episode_.smallest_gap = gap_;
+  episode_.smallest_gap_time = episode_.elapsed;
+  episode_.work += same_modes
+                       ? energy(1, to.displacement, to.velocity) - previous.energy(1, from.displacement, from.velocity)
+                       : 0.5 * (model_->stiffness() * gap_ * gap_ - before.stiffness() * previous.gap_ * previous.gap_);
 }
 
 void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
@@ -444,9 +511,9 @@ double SwitchedMotion::energy(int state, const Eigen::VectorXd& displacement, co
   if (state == 1)
   {
     // The spring's 1/2 k g^2 with g = clearance + d.eta: its quadratic part is in the frequencies, its linear one is
-    // the preload.
-    sum += -(linear.preload * displacement.array()).sum() +
-           0.5 * model_->stiffness() * model_->clearance() * model_->clearance();
+    // the preload. Modes that are left out stand deflected by the preload.
+    sum +=
+        -(linear.preload * displacement.array()).sum() + 0.5 * model_->stiffness() * model_->clearance() * linear.gap;
   }
   return sum;
 }
@@ -580,6 +647,20 @@ void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
     startFromCoordinates();
   }
   advanceInterval(0.0, sink);
+}
+
+/// From exponentials to displacement and velocity, from which any other drive or contact can go on.
+void SwitchedMotion::leaveExponentials()
+{
+  if (!in_coordinates_)
+  {
+    if (state_ == 1)
+    {
+      closeIntegrals();
+    }
+    toCoordinates();
+    in_coordinates_ = true;
+  }
 }
 
 void SwitchedMotion::startFromCoordinates()
@@ -1061,6 +1142,7 @@ void SwitchedMotion::endPiece()
     episode_.momentum_form = form;
   }
   episode_.elapsed += duration;
+  contact_time_ += duration;
 }
 
 /// W of the piece under Re D, with q' = Re sum Gamma lambda z + Re(i Omega V D), V = sum Gamma H:
@@ -1099,14 +1181,27 @@ double SwitchedMotion::harmonicWork() const
   return -0.5 * integral.real();
 }
 
+/// Adds what the force of this contact has done since it holds.
+void SwitchedMotion::closeForce()
+{
+  Impact& impact = episode_.impact;
+  episode_.impulse -= model_->stiffness() * episode_.gap_integral;
+  episode_.gap_integral = 0.0;
+  const double peak_force = -model_->stiffness() * episode_.smallest_gap;
+  if (peak_force > impact.peak_force)
+  {
+    impact.peak_force = peak_force;
+    impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
+  }
+}
+
 void SwitchedMotion::endEpisode(ImpactSink& sink, double energy)
 {
+  closeForce();
   Impact& impact = episode_.impact;
   impact.number = impacts_++;
   impact.duration = std::max(0.0, episode_.elapsed);
-  impact.impulse = -model_->stiffness() * episode_.gap_integral;
-  impact.peak_force = std::max(0.0, -model_->stiffness() * episode_.smallest_gap);
-  impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
+  impact.impulse = episode_.impulse;
   impact.energy_lost = episode_.energy + episode_.work - energy;
   // The impulse is the small difference of large terms where the episode is shallow or short. Within their rounding,
   // which adds up over its intervals and steps, it is what duration and peak allow.

@@ -72,6 +72,15 @@ public:
   /// The same for a given motion, in the coordinates of S0.
   void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
 
+  /// Between two intervals, goes on where `previous` is, which moves a model of the same structures with another
+  /// contact (the same coordinates in S0); `previous` is of no use afterwards. Displacements and velocities are kept,
+  /// the gap changes by the change of the clearance, and its sign decides the state. An open episode goes on if the
+  /// contact does; it is reported as cut short if not. Nothing is allocated.
+  ///
+  /// In the conjoined basis what must be mapped loses: where the stiffness is another one, all that is in S1 passes
+  /// through S0. A change of clearance alone maps nothing, unless it switches the state.
+  void takeOver(SwitchedMotion& previous, ImpactSink& sink);
+
   /// Advances over one interval in which the base acceleration goes from `from` to `to` in a straight line.
   void advanceLinear(double from, double to, ImpactSink& sink);
 
@@ -121,6 +130,11 @@ public:
   std::uint64_t switchLimitReached() const
   {
     return switch_limit_reached_;
+  }
+  /// Time spent in S1 since rest(), s.
+  double contactTime() const
+  {
+    return contact_time_;
   }
   std::uint64_t switches() const
   {
@@ -192,8 +206,9 @@ private:
     double smallest_gap_time = 0.0;  // since onset
     double elapsed = 0.0;            // up to the start of the piece
     double gap_integral = 0.0;
-    double work = 0.0;    // of the base on the structures
-    double energy = 0.0;  // at the onset
+    double impulse = 0.0;  // up to the last change of the contact
+    double work = 0.0;     // of the base on the structures, and of changes of the contact on the spring
+    double energy = 0.0;   // at the onset
     std::uint64_t first_step = 0;
     // the piece: the part of the episode inside the present interval
     double piece_start = 0.0;    // time in the interval
@@ -220,6 +235,7 @@ private:
     return state_ == 0 ? 1.0 : -1.0;
   }
 
+  void leaveExponentials();
   void startFromCoordinates();
   void advanceInterval(double slope_change, ImpactSink& sink);
   void locateSwitches(ImpactSink& sink);
@@ -290,6 +306,7 @@ private:
   double momentum() const;
   void beginPiece();
   void endPiece();
+  void closeForce();
   void endEpisode(ImpactSink& sink, double energy);
   void notePeak(double gap, double time);
   void watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before);
@@ -336,6 +353,7 @@ private:
   std::uint64_t steps_total_ = 0;
   std::uint64_t peak_evaluations_ = 0;
   std::uint64_t impacts_ = 0;
+  double contact_time_ = 0.0;  // s
   Episode episode_;
   HistorySample* history_ = nullptr;  // where the next sample goes, if anywhere
   std::size_t history_size_ = 0;      // samples an interval

@@ -144,6 +144,19 @@ void report(const config::ModelSummary& model, const std::vector<core::Response>
                                      { return a.row.impulse_mean < b.row.impulse_mean; });
   const auto steady = std::count_if(responses.begin(), responses.end(),
                                     [](const core::Response& response) { return response.row.steady; });
+  const auto count = [&responses](auto condition)
+  {
+    return std::count_if(responses.begin(), responses.end(),
+                         [&](const core::Response& response) { return condition(response.row); });
+  };
+  const auto quiet = count([](const core::ResponseRow& row) { return row.impacts == 0; });
+  const auto pressed = count([](const core::ResponseRow& row) { return row.impacts == 0 && row.contact_share == 1.0; });
+  const auto apart = count([](const core::ResponseRow& row) { return row.impacts == 0 && row.contact_share == 0.0; });
+  if (quiet > 0)
+  {
+    std::cout << "no impacts: " << quiet << " of " << responses.size() << " frequencies (always in contact " << pressed
+              << ", never " << apart << ")\n";
+  }
   std::cout << "greatest mean impulse: " << std::setprecision(6) << peak->row.impulse_mean << " N s (I* "
             << peak->row.impulse_star_mean << ") at omega* " << peak->row.omega_star << ", period " << peak->row.period
             << "\nsteady: " << steady << " of " << responses.size() << " frequencies\nwritten to " << out

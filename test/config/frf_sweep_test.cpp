@@ -108,6 +108,42 @@ TEST_F(FrfSweep, WritesTheTables)
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(results()), {}), 3);
 }
 
+TEST_F(FrfSweep, SaysWhereThereAreNoImpactsAndWhy)
+{
+  const std::string pressed = std::string(CONFIG_DIRECTORY) + "/interference_fit.yaml";
+  const std::string arguments = " --from 0.8 --to 1.6 --points 2 --cycles 200 --acceleration 0.2 --out ";
+  Outcome outcome = run(pressed + arguments + results());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("no impacts: 1 of 2 frequencies (always in contact 1, never 0)\n"));
+  std::vector<core::ResponseRow> rows = readResponseTable(results() + "/frf.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].impacts, 0);
+  EXPECT_EQ(rows[0].contact_share, 1.0);
+  EXPECT_EQ(rows[0].impulse_mean, 0.0);
+  EXPECT_EQ(rows[1].impacts, 15);
+  EXPECT_GT(rows[1].contact_share, 0.2);
+  EXPECT_LT(rows[1].contact_share, 0.8);
+  EXPECT_EQ(rows[1].clearance, -1.0e-7);
+  EXPECT_EQ(readImpactTable(results() + "/impacts.csv").size(), 15u);
+
+  core::SystemParameters parameters = loadFile(pressed);
+  parameters.contact.clearance = 1.0e-3;
+  const std::string open = directory_.file("open.yaml", toYaml(parameters));
+  outcome = run(open + arguments + results("open"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("no impacts: 2 of 2 frequencies (always in contact 0, never 2)\n"));
+  rows = readResponseTable(results("open") + "/frf.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  for (const core::ResponseRow& row : rows)
+  {
+    EXPECT_EQ(row.impacts, 0);
+    EXPECT_EQ(row.contact_share, 0.0);
+    EXPECT_EQ(row.impulse_star_max, 0.0);
+    EXPECT_EQ(row.peak_force, 0.0);
+  }
+  EXPECT_TRUE(readImpactTable(results("open") + "/impacts.csv").empty());
+}
+
 TEST_F(FrfSweep, WritesTheFrequencyRatioOfTheModel)
 {
   core::SystemParameters parameters = loadFile(limiting_case);

@@ -22,7 +22,8 @@ using testing::HasSubstr;
 
 const std::string response_header =
     "omega_star,frequency_hz,acceleration,period,steady,impacts,impacts_per_cycle,impulse_mean,impulse_min,impulse_max,"
-    "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean";
+    "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean,contact_share,"
+    "stiffness,clearance";
 const std::string impact_header =
     "omega_star,number,onset_s,duration_s,impulse,peak_force,approach_speed,separation_speed";
 
@@ -32,7 +33,8 @@ std::vector<core::Response> someResponses()
   quiet.row.omega_star = 0.5;
   quiet.row.period = 1;
   core::Response loud;
-  loud.row = {1.0 / 3.0, 90.5, 1.0, 2, true, 2, 1.0, 0.1, 0.05, 0.15, 1e-7, 2e-7, 3e-7, 0.1, 1.0e3, 0.7e-3};
+  loud.row = {1.0 / 3.0, 90.5, 1.0,  2,   true,  2,      1.0, 0.1,   0.05,   0.15,
+              1e-7,      2e-7, 3e-7, 0.1, 1.0e3, 0.7e-3, 0.4, 5.0e4, -1.0e-6};
   core::Impact impact;
   impact.number = 12345678901234;
   impact.duration = 0.7e-3;
@@ -70,10 +72,11 @@ TEST(ResponseTable, HasTheColumnsOfTheContract)
 {
   const std::vector<core::Response> responses = someResponses();
   EXPECT_EQ(responseTable(responses).name, "frf.csv");
-  EXPECT_EQ(responseTable(responses).text,
-            response_header +
-                "\n0.5,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0"
-                "\n0.3333333333333333,90.5,1,2,1,2,1,0.1,0.05,0.15,1e-07,2e-07,3e-07,0.1,1000,0.0007\n");
+  EXPECT_EQ(
+      responseTable(responses).text,
+      response_header +
+          "\n0.5,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0"
+          "\n0.3333333333333333,90.5,1,2,1,2,1,0.1,0.05,0.15,1e-07,2e-07,3e-07,0.1,1000,0.0007,0.4,50000,-1e-06\n");
   EXPECT_EQ(impactTable(responses).name, "impacts.csv");
   EXPECT_EQ(impactTable(responses).text,
             impact_header +
@@ -109,6 +112,9 @@ TEST(ResponseTable, ReadsBackExactly)
   EXPECT_EQ(row.impulse_per_cycle, expected.impulse_per_cycle);
   EXPECT_EQ(row.peak_force, expected.peak_force);
   EXPECT_EQ(row.duration_mean, expected.duration_mean);
+  EXPECT_EQ(row.contact_share, expected.contact_share);
+  EXPECT_EQ(row.stiffness, expected.stiffness);
+  EXPECT_EQ(row.clearance, expected.clearance);
   EXPECT_FALSE(rows[0].steady);
 
   const std::vector<ImpactRow> impacts = readImpactTable(output.path() + "/impacts.csv");
@@ -143,21 +149,21 @@ TEST(ResponseTable, SaysWhatIsWrongAndWhere)
   EXPECT_EQ(responseComplaint(""), ": is empty: must be a table that starts with the names of its columns");
   EXPECT_EQ(responseComplaint("omega_star,frequency_hz,acceleration,period,steady,impacts,impacts_per_cycle,"
                               "impulse_mean,impulse_min,impulse_max,impulse_star_mean,impulse_star_min,"
-                              "impulse_per_cycle,duration_mean\n"),
+                              "impulse_per_cycle,duration_mean,contact_share,stiffness,clearance\n"),
             ": line 1: columns are missing: impulse_star_max, peak_force");
   EXPECT_THAT(responseComplaint("hello\n"), HasSubstr(": line 1: columns are missing: omega_star, "));
-  const std::string row = "\n1,2,3,1,1,15,1,0,0,0,0,0,0,0,0,0";
-  EXPECT_EQ(responseComplaint(response_header + row + "\n1,2,3\n"), ": line 3: has 3 columns: must have 16");
-  EXPECT_EQ(responseComplaint(response_header + row + "\n\n"), ": line 3: has 1 columns: must have 16");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3x,1,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  const std::string row = "\n1,2,3,1,1,15,1,0,0,0,0,0,0,0,0,0,0.5,1,0";
+  EXPECT_EQ(responseComplaint(response_header + row + "\n1,2,3\n"), ": line 3: has 3 columns: must have 19");
+  EXPECT_EQ(responseComplaint(response_header + row + "\n\n"), ": line 3: has 1 columns: must have 19");
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3x,1,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column acceleration = \"3x\": must be a finite number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,nan,1,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,nan,1,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column acceleration = \"nan\": must be a finite number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1.5,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1.5,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column period = \"1.5\": must be a whole number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,-1,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,-1,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column period = \"-1\": must be a whole number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1,2,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1,2,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column steady = \"2\": must be a whole number");
   const TemporaryDirectory directory;
   EXPECT_THAT(complaint([&] { readImpactTable(directory.path()); }), HasSubstr("it is a directory"));

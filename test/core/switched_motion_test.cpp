@@ -488,7 +488,7 @@ TEST(SwitchedMotion, aTruncatedBasisSwitchesAtTheSameTimesHoweverTheDriveIsSampl
   const SampledRun expected = simulate(model, std::vector<double>(201, 1.0), coarse);
   const SampledRun found = simulate(model, std::vector<double>(1541, 1.0), fine);
   ASSERT_EQ(found.impacts.size(), expected.impacts.size());
-  ASSERT_GT(found.impacts.size(), 20u);
+  ASSERT_GT(found.impacts.size(), 10u);
   for (std::size_t i = 0; i < found.impacts.size(); ++i)
   {
     EXPECT_NEAR(onsetTime(found.impacts[i], fine), onsetTime(expected.impacts[i], coarse), 1e-10) << "impact " << i;
