@@ -93,6 +93,8 @@ void toMessage(const core::SwitchedModel& model, const std::string& configuratio
   message.free_frequencies = hertz(model.free().frequency);
   message.contact_frequencies = hertz(model.contact().frequency);
   message.mapping_loss.assign(loss.data(), loss.data() + loss.size());
+  message.seq = 0;
+  message.number = 0;
 }
 
 void fromMessage(const BaseExcitation& message, Samples& samples)

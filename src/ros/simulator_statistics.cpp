@@ -34,6 +34,7 @@ void SimulatorStatistics::count(const StreamSimulation::Answer& answer, double c
     ++totals_.restarts;
   }
   totals_.impacts += answer.impacts.size();
+  totals_.contact_changes += answer.contact_changes.size();
   totals_.switch_limits += answer.switch_limits;
   totals_.computing_time += computing_time;
 }
@@ -105,6 +106,7 @@ void SimulatorStatistics::report(std::optional<double> input_age, diagnostic_upd
   status.add("Restarts", totals_.restarts);
   status.add("Resets", totals_.resets);
   status.add("Impacts", totals_.impacts);
+  status.add("Contact changes", totals_.contact_changes);
   status.add("Switch limit reached", totals_.switch_limits);
   if (input_age)
   {

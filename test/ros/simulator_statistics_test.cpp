@@ -68,6 +68,7 @@ TEST_F(SimulatorStatisticsTest, allIsWell)
 {
   StreamSimulation::Answer start = answer(Action::Start);
   start.impacts.resize(3);
+  start.contact_changes.resize(2);
   statistics_.count(start, 0.0005);
   statistics_.count(answer(Action::Continue), 0.0005);
   report();
@@ -76,6 +77,7 @@ TEST_F(SimulatorStatisticsTest, allIsWell)
   EXPECT_EQ(value("Blocks accepted"), "2");
   EXPECT_EQ(value("Blocks refused"), "0");
   EXPECT_EQ(value("Impacts"), "3");
+  EXPECT_EQ(value("Contact changes"), "2");
   EXPECT_EQ(value("Input age (s)"), "0.100");
   EXPECT_EQ(value("Last refusal"), "none");
 }

@@ -42,6 +42,7 @@ private:
     std::uint64_t restarts = 0;
     std::uint64_t resets = 0;
     std::uint64_t impacts = 0;
+    std::uint64_t contact_changes = 0;
     std::uint64_t switch_limits = 0;
     double stream_time = 0.0;     ///< s
     double computing_time = 0.0;  ///< s

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,6 +30,14 @@ struct StampedImpact
 class StreamSimulation : private core::ImpactSink
 {
 public:
+  /// Another contact has been taken.
+  struct ContactChange
+  {
+    std::uint64_t seq = 0;  ///< number of the first sample it holds for
+    Stamp stamp = 0;        ///< of that sample
+    std::shared_ptr<const core::SwitchedModel> model;
+  };
+
   /// What one block, reset() or finish() brought.
   struct Answer
   {
@@ -35,10 +45,21 @@ public:
     Samples gap;                         ///< m; one sample for each of the block, none if it was refused
     Samples force;                       ///< N, likewise
     std::vector<StampedImpact> impacts;  ///< in order of release
-    std::uint64_t switch_limits = 0;     ///< sample intervals in which the bound on switches was reached
+    std::vector<ContactChange> contact_changes;
+    std::uint64_t switch_limits = 0;  ///< sample intervals in which the bound on switches was reached
   };
 
+  /// More changes of the contact than this do not wait.
+  static constexpr std::size_t max_waiting_changes = 1000;
+
   StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits);
+
+  /// `model`, one of the same structures with another contact, holds from sample `seq` on, or from the next one that
+  /// comes if that is 0. It is taken between that sample and the one before (core::SampledSimulation::setModel), or
+  /// with the start of a stream from there; restarts and reset() do not bring an earlier contact back, and leave
+  /// changes waiting that are yet to come. Of two changes at one sample the later request counts. Throws
+  /// std::invalid_argument, and changes nothing, if that sample has been simulated or max_waiting_changes wait.
+  void setContact(std::shared_ptr<const core::SwitchedModel> model, std::uint64_t seq);
 
   /// Judges a block of base acceleration (m/s^2) and, unless it is refused, advances over it. A refused block leaves
   /// the state untouched. The answer holds until the next call.
@@ -47,13 +68,23 @@ public:
   /// Back to rest; the next block starts a stream. An open episode is answered as cut short.
   const Answer& reset();
 
+  /// The model that the sample taken last was simulated with.
+  const core::SwitchedModel& model() const
+  {
+    return *model_;
+  }
+
 private:
   void onImpact(const core::Impact& impact) override;
-  void bridge(std::uint64_t missing, double from, double to);
+  void advanceSamples(std::uint64_t seq, const double* acceleration, std::size_t count, double* gap, double* force);
+  bool takeContact(std::uint64_t seq);
+  void noteContactChange(std::uint64_t seq);
+  void bridge(std::uint64_t seq, std::uint64_t missing, double from, double to);
   void clearAnswer();
   void rest();
 
   std::shared_ptr<const core::SwitchedModel> model_;
+  std::map<std::uint64_t, std::shared_ptr<const core::SwitchedModel>> waiting_;  ///< by the sample they hold from
   StreamRules rules_;
   std::optional<core::SampledSimulation> simulation_;
   std::uint64_t first_seq_ = 0;  ///< the sample that found the model at rest
