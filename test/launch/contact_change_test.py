@@ -151,8 +151,8 @@ class ContactChangeTest(NodeProcessTest):
         self.assertIn("4 changes of the contact told to", output)
         subprocess.check_call(
             ["rosbag", "play", "--quiet", "--rate", "5", "--delay", "1", "--wait-for-subscribers", path,
-             "--topics", "base_excitation", "base_excitation:=" + self.namespace + "/again/base_excitation"],
-            stdout=subprocess.DEVNULL)
+             "--topics", "base_excitation", "base_excitation:=" + self.namespace + "/base_excitation"],
+            stdout=subprocess.DEVNULL, timeout=PATIENCE)
         again.answered(100)
         self.assertEqual([fields(impact) for impact in again.messages["impact"]], impacts)
         self.assertEqual([(info.seq, info.number, info.configuration) for info in again.messages["model_info"]],
