@@ -13,7 +13,7 @@ import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 
-from node_process import PATIENCE, NodeProcessTest, wait_until
+from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
 from vibro_impact.msg import BaseExcitation, Gap, Impact, ModelInfo
 from vibro_impact.srv import SetContact
 
@@ -54,7 +54,7 @@ class Rig:
         self.test = test
         self.name = name_space + "/simulator"
         self.messages = {}
-        self.subscribers = []
+        self.topics = []
         for topic, kind in [("gap", Gap), ("impact", Impact), ("model_info", ModelInfo)]:
             self.subscribe(name_space + "/" + topic, topic, kind)
         self.subscribe("/diagnostics", "diagnostics", DiagnosticArray)
@@ -65,13 +65,13 @@ class Rig:
 
     def subscribe(self, topic, key, kind):
         self.messages[key] = []
-        self.subscribers.append(rospy.Subscriber(topic, kind, self.messages[key].append, queue_size=None))
-        self.test.interfaces.append(self.subscribers[-1])
+        self.topics.append(topic)
+        self.test.interfaces.append(rospy.Subscriber(topic, kind, self.messages[key].append, queue_size=None))
 
     def connect(self):
         self.test.assertTrue(wait_until(
             lambda: self.publisher.get_num_connections() == 1 and self.messages["model_info"]
-            and all(subscriber.get_num_connections() >= 1 for subscriber in self.subscribers)), self.test.printed())
+            and is_connected(self.name, self.topics)), self.test.printed())
 
     def count(self, key):
         """A number of this simulator's latest diagnostics; -1 before the first."""
