@@ -68,6 +68,20 @@ double dot(const double* __restrict x, const double* __restrict y, Eigen::Index 
 }
 
 VIBRO_IMPACT_CLONES
+double quadraticForm(const double* __restrict z, const double* __restrict squares, const double* __restrict products,
+                     Eigen::Index half)
+{
+  Packet result{};
+  for (Eigen::Index n = 0; n < half / lanes; ++n)
+  {
+    const Packet x = packets(z)[n];
+    const Packet y = packets(z + half)[n];
+    result += packets(squares)[n] * x * x + packets(squares + half)[n] * y * y + packets(products)[n] * x * y;
+  }
+  return sum(result);
+}
+
+VIBRO_IMPACT_CLONES
 Forms kickGrowEvaluate(double* __restrict z, double change, const double* __restrict kick,
                        const double* __restrict factor_re, const double* __restrict factor_im,
                        const double* __restrict first, const double* __restrict second, Eigen::Index half)

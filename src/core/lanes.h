@@ -24,6 +24,9 @@ void addScaled(double* x, double factor, const double* y, Eigen::Index size);
 
 double dot(const double* x, const double* y, Eigen::Index size);
 
+/// sum squares x^2 + squares' y^2 + products x y  over z = [x; y] and the squares' coefficients alike, `half` of each.
+double quadraticForm(const double* z, const double* squares, const double* products, Eigen::Index half);
+
 /// Values of two linear forms.
 struct Forms
 {

@@ -59,7 +59,7 @@ SwitchedMotion::SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool 
     const Eigen::Index modes = linearState(state).size();
     const Eigen::Index half = padded(modes + (phasor_ ? 1 : 0));
     Vectors& v = vectors_[static_cast<std::size_t>(state)];
-    v.exponentials = v.before = v.trial = v.piece = v.history = Eigen::VectorXd::Zero(2 * half);
+    v.exponentials = v.before = v.trial = v.history = Eigen::VectorXd::Zero(2 * half);
     v.displacement = v.velocity = Eigen::VectorXd::Zero(modes);
     tabulate(state);
   }
@@ -103,9 +103,6 @@ void SwitchedMotion::tabulate(int state)
   }
   t.line_compliance = (linear.contact_deflection * t.compliance).sum();
   t.line_lag = (linear.contact_deflection * t.lag).sum();
-  t.momentum_constant = (linear.participation * t.standing).sum();
-  t.momentum_compliance = (linear.participation * t.compliance).sum();
-  t.momentum_lag = (linear.participation * t.lag).sum();
 
   t.kick = Eigen::VectorXd::Zero(2 * half);
   t.kick.head(modes) = -t.lag;
@@ -116,7 +113,6 @@ void SwitchedMotion::tabulate(int state)
 
   t.derivative = Eigen::MatrixXd::Zero(2 * half, highest_derivative + 2);
   t.magnitude = Eigen::MatrixXd::Zero(half, highest_derivative + 2);
-  t.momentum = t.momentum_integral = Eigen::VectorXd::Zero(2 * half);
   for (Eigen::Index n = t.bodies; n < modes; ++n)
   {
     const std::complex<double> lambda(-t.decay(n), t.damped(n));
@@ -129,13 +125,9 @@ void SwitchedMotion::tabulate(int state)
       t.magnitude(n, column) = std::abs(weight) * std::pow(linear.frequency(n), static_cast<double>(column));
       factor = column == 0 ? std::complex<double>(weight) : factor * lambda;
     }
-    const std::complex<double> integral = linear.participation(n) / lambda;
-    t.momentum(n) = linear.participation(n);
-    t.momentum_integral(n) = integral.real();
-    t.momentum_integral(half + n) = -integral.imag();
   }
   t.kick_gap_integral = t.derivative.col(0).dot(t.kick);
-  t.kick_momentum_integral = t.momentum_integral.dot(t.kick);
+  t.energy.tabulate(linear, t.kick);
 }
 
 void SwitchedMotion::tabulatePhasor(int state)
@@ -169,6 +161,7 @@ void SwitchedMotion::tabulatePhasor(int state)
     t.magnitude(modes, column) = std::abs(weight) * std::pow(omega, static_cast<double>(column));
     factor = column == 0 ? weight : factor * lambda;
   }
+  t.energy.tabulateHarmonic(linear, omega, drive_amplitude_, t.transfer_re, t.transfer_im);
 }
 
 void SwitchedMotion::setInterval(double length)
@@ -226,6 +219,7 @@ void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
   }
   if (!in_coordinates_)
   {
+    closeSpan();
     if (state_ == 1)
     {
       closeIntegrals();
@@ -275,9 +269,10 @@ void SwitchedMotion::rest()
   intervals_ = impacts_ = 0;
   if (state_ == 1)
   {
-    beginEpisode(0.0, 0.0, 0.0, energy());
+    beginEpisode(0.0, 0.0, 0.0);
     episode_.impact.cut_short = true;
   }
+  openAccount();
 }
 
 void SwitchedMotion::start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
@@ -298,13 +293,13 @@ void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, con
   in_coordinates_ = true;
   if (gap_ < -resolution_)
   {
-    const double stored = energy();
     state_ = 1;
     vectors().displacement = model_->mapping().transpose() * displacement;
     vectors().velocity = model_->mapping().transpose() * velocity;
-    beginEpisode(0.0, 0.0, 0.0, stored);
+    beginEpisode(0.0, 0.0, 0.0);
     episode_.impact.cut_short = true;
   }
+  openAccount();
 }
 
 double SwitchedMotion::force(double gap) const
@@ -410,16 +405,15 @@ void SwitchedMotion::moveBodies()
   body_time_ = time_;
 }
 
-double SwitchedMotion::bodyEnergy() const
+double SwitchedMotion::bodyEnergy(const Eigen::VectorXd& z, double time) const
 {
   const Tables& t = now();
-  const Eigen::VectorXd& z = vectors().exponentials;
   const Eigen::Index modes = t.decay.size();
   const Eigen::Index half = z.size() / 2;
   double sum = 0.0;
   for (Eigen::Index n = 0; n < t.bodies; ++n)
   {
-    double velocity = bodyVelocity(n, time_);
+    double velocity = bodyVelocity(n, time);
     if (phasor_)
     {
       velocity -= drive_frequency_ * (t.transfer_im(n) * z(modes) + t.transfer_re(n) * z(half + modes));
@@ -559,6 +553,7 @@ void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
     // Displacement and velocity are continuous; the quasi-static part takes the new slope at once and z makes up for
     // it.
     change = slope - slope_;
+    now().energy.pass(vectors().exponentials, change, slope_, length_);
     slope_ = slope;
     bound_ += std::abs(change) * now().kick_bound;
   }
@@ -579,6 +574,10 @@ void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
   {
     startFromCoordinates();
   }
+  else
+  {
+    ++span_intervals_;
+  }
   advanceInterval(0.0, sink);
 }
 
@@ -587,6 +586,7 @@ void SwitchedMotion::startFromCoordinates()
   toExponentials();
   evaluate();
   refreshBound();
+  openSpan();
   if (state_ == 1)
   {
     openIntegrals();
@@ -603,6 +603,10 @@ HistorySample SwitchedMotion::sample() const
   coordinates(displacement, velocity);
   HistorySample sample;
   describe(0.0, gap_, rate_, displacement, velocity, sample);
+  if (!in_coordinates_)
+  {
+    enter(now().energy.upTo(vectors().exponentials, moment(vectors().exponentials, time_)), sample.energy);
+  }
   sample.acceleration = phasor_ ? -drive_amplitude_ : acceleration(time_);
   return sample;
 }
@@ -615,7 +619,61 @@ void SwitchedMotion::describe(double time, double gap, double rate, const Eigen:
   sample.gap_velocity = rate;
   sample.force = force(gap);
   sample.in_contact = inContact();
+  sample.energy = account_;
   storeEnergy(displacement, velocity, gap, sample.energy);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The energy account
+
+void SwitchedMotion::openAccount()
+{
+  account_ = EnergyAccount();
+  storeEnergy(vectors().displacement, vectors().velocity, gap_, account_);
+  account_.initial = account_.turnover = account_.stored();
+}
+
+SpanEnergy::Moment SwitchedMotion::moment(const Eigen::VectorXd& exponentials, double time) const
+{
+  SpanEnergy::Moment moment;
+  moment.acceleration = acceleration(time);
+  moment.slope = slope_;
+  moment.time = time;
+  moment.body_energy = bodyEnergy(exponentials, time);
+  if (phasor_)
+  {
+    const Eigen::Index modes = now().decay.size();
+    moment.drive_re = exponentials(modes);
+    moment.drive_im = exponentials(exponentials.size() / 2 + modes);
+    moment.time += static_cast<double>(span_intervals_) * length_;
+  }
+  return moment;
+}
+
+void SwitchedMotion::openSpan()
+{
+  span_intervals_ = 0;
+  const Eigen::VectorXd& z = vectors().exponentials;
+  now().energy.open(z, moment(z, time_));
+}
+
+void SwitchedMotion::closeSpan()
+{
+  const Eigen::VectorXd& z = vectors().exponentials;
+  const SpanEnergy::Amounts amounts = now().energy.upTo(z, moment(z, time_));
+  enter(amounts, account_);
+  if (state_ == 1)
+  {
+    episode_.impact.base_work += amounts.work;
+    episode_.impact.dissipated += amounts.dissipated;
+  }
+}
+
+void SwitchedMotion::enter(const SpanEnergy::Amounts& amounts, EnergyAccount& account) const
+{
+  account.work += amounts.work;
+  (state_ == 0 ? account.dissipated_free : account.dissipated_contact) += amounts.dissipated;
+  account.turnover += std::abs(amounts.work) + std::abs(amounts.dissipated);
 }
 
 void SwitchedMotion::storeEnergy(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity, double gap,
@@ -659,6 +717,7 @@ void SwitchedMotion::takeHistory()
     evaluate(v.trial, time, gap, rate);
     coordinates(v.trial, time, v.displacement, v.velocity);
     describe(time, gap, rate, v.displacement, v.velocity, sample);
+    enter(now().energy.upTo(v.trial, moment(v.trial, time)), sample.energy);
     sample.acceleration = v.trial(v.displacement.size());
   }
 }
@@ -669,6 +728,7 @@ void SwitchedMotion::endHistoryInterval()
   HistorySample& sample = *history_++;
   coordinates(v.exponentials, time_, v.displacement, v.velocity);
   describe(0.0, gap_, rate_, v.displacement, v.velocity, sample);
+  enter(now().energy.upTo(v.exponentials, moment(v.exponentials, time_)), sample.energy);
   sample.acceleration = -drive_amplitude_;
   history_taken_ = 0;
 }
@@ -686,7 +746,6 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
     {
       addScaled(v.before.data(), slope_change, t.kick.data(), t.kick.size());
       episode_.gap_integral -= slope_change * t.kick_gap_integral;
-      episode_.momentum_form += slope_change * t.kick_momentum_integral;
     }
     beginPiece();
   }
@@ -904,6 +963,11 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   const double overrun = gap_ / rate_;
   const double late = overrun > 0.0 && overrun <= most_ticks_through * tick_ ? overrun : 0.0;
   const double speed = std::abs(rate_ - late * derivative(2));
+  if (history_ != nullptr)
+  {
+    takeHistory();
+  }
+  closeSpan();
   if (state_ == 1)
   {
     endPiece();
@@ -911,13 +975,9 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
     episode_.elapsed -= late;
     episode_.impact.separation_speed = speed;
   }
-  if (history_ != nullptr)
-  {
-    takeHistory();
-  }
   const Vectors& from = vectors();
   toCoordinates();
-  const double energy_before = energy(state_, from.displacement, from.velocity);
+  double mapping_loss = model_->lossless() ? 0.0 : energy(state_, from.displacement, from.velocity);
   const Eigen::Index from_half = from.exponentials.size() / 2;
 
   state_ = 1 - state_;
@@ -938,9 +998,16 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
     to.exponentials(to.displacement.size()) = from.exponentials(from.displacement.size());
     to.exponentials(half + to.displacement.size()) = from.exponentials(from_half + from.displacement.size());
   }
+  if (!model_->lossless())
+  {
+    mapping_loss -= energy(state_, to.displacement, to.velocity);
+    account_.mapping_loss += mapping_loss;
+    account_.turnover += std::abs(mapping_loss);
+  }
   toExponentials();
   evaluate();
   refreshBound();
+  openSpan();
   if (history_ != nullptr)
   {
     beginHistoryPiece();
@@ -948,13 +1015,15 @@ void SwitchedMotion::switchState(double time, ImpactSink& sink)
   ++switches_;
   if (state_ == 1)
   {
-    beginEpisode(time - late, late, speed, energy_before);
+    beginEpisode(time - late, late, speed);
+    episode_.impact.mapping_loss = mapping_loss;
     openIntegrals();
     beginPiece();
   }
   else
   {
-    endEpisode(sink, energy(0, to.displacement, to.velocity));
+    episode_.impact.mapping_loss += mapping_loss;
+    endEpisode(sink);
   }
 }
 
@@ -962,18 +1031,19 @@ void SwitchedMotion::interrupt(ImpactSink& sink)
 {
   if (state_ == 1)
   {
-    const double stored = energy();
     episode_.impact.cut_short = true;
     if (!in_coordinates_)
     {
+      closeSpan();
       closeIntegrals();
     }
-    endEpisode(sink, stored);
+    endEpisode(sink);
     // What is left of the episode is not whole either.
-    beginEpisode(0.0, 0.0, 0.0, stored);
+    beginEpisode(0.0, 0.0, 0.0);
     episode_.impact.cut_short = true;
     if (!in_coordinates_)
     {
+      openSpan();
       openIntegrals();
     }
   }
@@ -982,64 +1052,36 @@ void SwitchedMotion::interrupt(ImpactSink& sink)
 // ---------------------------------------------------------------------------------------------------------------------
 // The contact episode
 
-void SwitchedMotion::beginEpisode(double offset, double elapsed, double approach_speed, double energy)
+void SwitchedMotion::beginEpisode(double offset, double elapsed, double approach_speed)
 {
   episode_ = Episode();
   episode_.impact.interval = intervals_;
   episode_.impact.offset = offset;
   episode_.impact.approach_speed = approach_speed;
   episode_.elapsed = elapsed;
-  episode_.energy = energy;
   episode_.smallest_gap = gap_;
   episode_.first_step = steps_total_;
 }
 
 // Over a piece of the episode inside one interval the integral of the gap is that of a line plus J(z_end) - J(z_start),
 // J being a linear form. From piece to piece z only changes by the kick of a new slope, so that the forms cancel but
-// for these kicks and the two ends of the episode. The base's work on the structures, W = -integral a q' dt with q =
-// sum Gamma eta, is by parts
-// -[a q] + sum over the pieces of s integral q dt, where again [a q] only counts at the ends of the episode. On bodies
-// that nothing holds the base does the work by which their kinetic energy changes.
+// for these kicks and the two ends of the episode.
 
 void SwitchedMotion::openIntegrals()
 {
-  const Tables& t = now();
   const Eigen::VectorXd& z = vectors().exponentials;
-  episode_.gap_integral -= dot(t.derivative.data(), z.data(), z.size());
-  episode_.work -= bodyEnergy();
-  if (!phasor_)
-  {
-    episode_.momentum_form = dot(t.momentum_integral.data(), z.data(), z.size());
-    episode_.work += acceleration(time_) * momentum();
-  }
+  episode_.gap_integral -= dot(now().derivative.data(), z.data(), z.size());
 }
 
 void SwitchedMotion::closeIntegrals()
 {
   const Eigen::VectorXd& z = vectors().exponentials;
   episode_.gap_integral += dot(now().derivative.data(), z.data(), z.size());
-  episode_.work += bodyEnergy();
-  if (!phasor_)
-  {
-    episode_.work -= acceleration(time_) * momentum();
-  }
-}
-
-double SwitchedMotion::momentum() const
-{
-  const Tables& t = now();
-  const Eigen::VectorXd& z = vectors().exponentials;
-  return t.momentum_constant - t.momentum_compliance * acceleration(time_) + t.momentum_lag * slope_ +
-         dot(t.momentum.data(), z.data(), z.size());
 }
 
 void SwitchedMotion::beginPiece()
 {
   episode_.piece_start = time_;
-  if (phasor_)
-  {
-    vectors().piece = vectors().exponentials;
-  }
 }
 
 void SwitchedMotion::endPiece()
@@ -1048,58 +1090,10 @@ void SwitchedMotion::endPiece()
   const double duration = time_ - episode_.piece_start;
   const double mean = 0.5 * (acceleration(episode_.piece_start) + acceleration(time_));
   episode_.gap_integral += duration * (t.line_constant - t.line_compliance * mean + t.line_lag * slope_);
-  if (phasor_)
-  {
-    episode_.work += harmonicWork();
-  }
-  else
-  {
-    const Eigen::VectorXd& z = vectors().exponentials;
-    const double form = dot(t.momentum_integral.data(), z.data(), z.size());
-    const double line = t.momentum_constant - t.momentum_compliance * mean + t.momentum_lag * slope_;
-    episode_.work += slope_ * (duration * line + (form - episode_.momentum_form));
-    episode_.momentum_form = form;
-  }
   episode_.elapsed += duration;
 }
 
-/// W of the piece under Re D, with q' = Re sum Gamma lambda z + Re(i Omega V D), V = sum Gamma H:
-///   integral Re(D) Re(y) dt = 1/2 Re integral (D y + D* y) dt,  exponentials all of them
-double SwitchedMotion::harmonicWork() const
-{
-  const Tables& t = now();
-  const Vectors& v = vectors();
-  const LinearState& linear = linearState(state_);
-  const Eigen::Index modes = linear.size();
-  const Eigen::Index half = v.piece.size() / 2;
-  const auto entry = [half](const Eigen::VectorXd& exponentials, Eigen::Index n)
-  { return std::complex<double>(exponentials(n), exponentials(half + n)); };
-  const std::complex<double> drive_from = entry(v.piece, modes);
-  const std::complex<double> drive_to = entry(v.exponentials, modes);
-  const std::complex<double> i_omega(0.0, drive_frequency_);
-  std::complex<double> integral = 0.0;  // of (D + D*) q', complex parts as above
-  std::complex<double> admittance = 0.0;
-  for (Eigen::Index n = t.bodies; n < modes; ++n)
-  {
-    if (linear.participation(n) == 0.0)
-    {
-      continue;
-    }
-    const std::complex<double> lambda(-t.decay(n), t.damped(n));
-    const std::complex<double> from = entry(v.piece, n);
-    const std::complex<double> to = entry(v.exponentials, n);
-    integral += linear.participation(n) * lambda *
-                ((to * drive_to - from * drive_from) / (lambda + i_omega) +
-                 (to * std::conj(drive_to) - from * std::conj(drive_from)) / (lambda - i_omega));
-    admittance += linear.participation(n) * std::complex<double>(t.transfer_re(n), t.transfer_im(n));
-  }
-  const double duration = time_ - episode_.piece_start;
-  integral += 0.5 * admittance * (drive_to * drive_to - drive_from * drive_from) +
-              i_omega * admittance * drive_amplitude_ * drive_amplitude_ * duration;
-  return -0.5 * integral.real();
-}
-
-void SwitchedMotion::endEpisode(ImpactSink& sink, double energy)
+void SwitchedMotion::endEpisode(ImpactSink& sink)
 {
   Impact& impact = episode_.impact;
   impact.number = impacts_++;
@@ -1107,7 +1101,7 @@ void SwitchedMotion::endEpisode(ImpactSink& sink, double energy)
   impact.impulse = -model_->stiffness() * episode_.gap_integral;
   impact.peak_force = std::max(0.0, -model_->stiffness() * episode_.smallest_gap);
   impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
-  impact.energy_lost = episode_.energy + episode_.work - energy;
+  impact.energy_lost = impact.dissipated + impact.mapping_loss;
   // The impulse is the small difference of large terms where the episode is shallow or short. Within their rounding,
   // which adds up over its intervals and steps, it is what duration and peak allow.
   const std::uint64_t roundings = 1 + intervals_ - impact.interval + steps_total_ - episode_.first_step;

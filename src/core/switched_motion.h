@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "span_energy.h"
 #include "vibro_impact/core/energy_account.h"
 #include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
@@ -161,26 +162,23 @@ private:
     Eigen::ArrayXd transfer_re, transfer_im;  // H_n
     Eigen::VectorXd kick;                     // change of z per change of the slope s, [re; im]
     double kick_bound = 0.0;                  // what it adds to B
-    double kick_gap_integral = 0.0;           // its integral forms
-    double kick_momentum_integral = 0.0;
-    // The line p(t) = line_constant - line_compliance a + line_lag s of the gap, and the same of q = sum Gamma eta.
+    double kick_gap_integral = 0.0;           // its integral form
+    // The line p(t) = line_constant - line_compliance a + line_lag s of the gap.
     double line_constant = 0.0, line_compliance = 0.0, line_lag = 0.0;
-    double momentum_constant = 0.0, momentum_compliance = 0.0, momentum_lag = 0.0;
     // Column j + 1: the linear form [re; im] that gives the j-th derivative of Re sum w z; column 0 its integral.
     Eigen::MatrixXd derivative;
-    Eigen::MatrixXd magnitude;                    // column j: |w| |lambda|^j
-    Eigen::VectorXd momentum, momentum_integral;  // the same of Re sum Gamma z
-    Eigen::ArrayXXd factor_re, factor_im;         // column k: exp(lambda tick 2^k) - 1
+    Eigen::MatrixXd magnitude;  // column j: |w| |lambda|^j
+    SpanEnergy energy;
+    Eigen::ArrayXXd factor_re, factor_im;  // column k: exp(lambda tick 2^k) - 1
   };
 
   /// What moves, in the sizes of one state.
   struct Vectors
   {
-    Eigen::VectorXd exponentials;  // [Re z; Im z], each half the modes, the drive's phasor, and padding; of bodies
-                                   // displacement and velocity of the polynomial part at body_time_
-    Eigen::VectorXd before, trial,
-        piece;                // exponentials at other times: before a step, on trial, at the start of a piece
-    Eigen::VectorXd history;  // exponentials at history_start_
+    Eigen::VectorXd exponentials;   // [Re z; Im z], each half the modes, the drive's phasor, and padding; of bodies
+                                    // displacement and velocity of the polynomial part at body_time_
+    Eigen::VectorXd before, trial;  // exponentials at other times: before a step, on trial
+    Eigen::VectorXd history;        // exponentials at history_start_
     Eigen::VectorXd displacement, velocity;  // eta and eta'
   };
 
@@ -192,12 +190,9 @@ private:
     double smallest_gap_time = 0.0;  // since onset
     double elapsed = 0.0;            // up to the start of the piece
     double gap_integral = 0.0;
-    double work = 0.0;    // of the base on the structures
-    double energy = 0.0;  // at the onset
     std::uint64_t first_step = 0;
     // the piece: the part of the episode inside the present interval
-    double piece_start = 0.0;    // time in the interval
-    double momentum_form = 0.0;  // integral form of sum Gamma z at its start
+    double piece_start = 0.0;  // time in the interval
   };
 
   void tabulate(int state);
@@ -257,7 +252,7 @@ private:
   double bodyDisplacement(Eigen::Index n, double time) const;
   double bodyVelocity(Eigen::Index n, double time) const;
   void moveBodies();
-  double bodyEnergy() const;
+  double bodyEnergy(const Eigen::VectorXd& exponentials, double time) const;
   /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own,
   /// but for bodyBound().
   double boundOfDerivative(int order) const;
@@ -282,15 +277,20 @@ private:
   {
     return start_acceleration_ + slope_ * time;
   }
-  double harmonicWork() const;
 
-  void beginEpisode(double offset, double elapsed, double approach_speed, double energy);
+  void openAccount();
+  SpanEnergy::Moment moment(const Eigen::VectorXd& exponentials, double time) const;
+  void openSpan();
+  void closeSpan();
+  /// Enters what went on in a span of the present state.
+  void enter(const SpanEnergy::Amounts& amounts, EnergyAccount& account) const;
+
+  void beginEpisode(double offset, double elapsed, double approach_speed);
   void openIntegrals();
   void closeIntegrals();
-  double momentum() const;
   void beginPiece();
   void endPiece();
-  void endEpisode(ImpactSink& sink, double energy);
+  void endEpisode(ImpactSink& sink);
   void notePeak(double gap, double time);
   void watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before);
   struct GapSample
@@ -337,6 +337,8 @@ private:
   std::uint64_t peak_evaluations_ = 0;
   std::uint64_t impacts_ = 0;
   Episode episode_;
+  EnergyAccount account_;             // of the spans that have ended; what is stored is filled in when asked for
+  std::uint64_t span_intervals_ = 0;  // of the harmonic drive since the span began
   HistorySample* history_ = nullptr;  // where the next sample goes, if anywhere
   std::size_t history_size_ = 0;      // samples an interval
   std::size_t history_taken_ = 0;     // of this interval
