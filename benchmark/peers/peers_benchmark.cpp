@@ -2,10 +2,8 @@
 // What is measured and how: README.md of this folder's parent.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -17,6 +15,7 @@
 
 #include <boost/program_options.hpp>
 
+#include "../stopwatch.h"
 #include "peer.h"
 #include "reference.h"
 #include "vibro_impact/config/configuration.h"
@@ -209,18 +208,6 @@ std::optional<Tuned> tune(const Peer& peer, const Problem& problem, const Refere
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Timing
-
-double wallTime()
-{
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double threadTime()
-{
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1.0e-9 * static_cast<double>(time.tv_nsec);
-}
 
 /// Something to time: `prepare` is not timed.
 struct Timed
