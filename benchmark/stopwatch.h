@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <ctime>
+#include <fstream>
+#include <string>
 
 namespace vibro_impact
 {
@@ -16,5 +18,24 @@ inline double threadTime()
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1.0e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Processor and day, for the head of a table.
+inline std::string today()
+{
+  std::string processor = "unknown processor";
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+  {
+    if (line.rfind("model name", 0) == 0)
+    {
+      processor = line.substr(line.find(": ") + 2);
+      break;
+    }
+  }
+  const std::time_t now = std::time(nullptr);
+  char day[16];
+  std::strftime(day, sizeof(day), "%Y-%m-%d", std::gmtime(&now));
+  return processor + ", " + day;
 }
 }  // namespace vibro_impact

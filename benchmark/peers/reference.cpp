@@ -22,8 +22,8 @@ std::complex<long double> amplitude(std::complex<long double> lambda, long doubl
 }
 }  // namespace
 
-Reference::Reference(const Problem& problem, double end)
-    : mapping_(problem.mapping), drive_frequency_(problem.drive_frequency)
+Reference::Reference(const Problem& problem, double end, double disturbance)
+    : mapping_(problem.mapping), drive_frequency_(problem.drive_frequency), disturbance_(disturbance)
 {
   for (int s = 0; s < 2; ++s)
   {
@@ -42,7 +42,6 @@ Reference::Reference(const Problem& problem, double end)
   }
 
   // At rest gap and rate are zero, and here the acceleration, too: the first derivative that is not zero decides.
-  Segment segment{0.0L, 0, {}};
   const auto atRest = [&](int state)
   {
     Segment rest{0.0L, state, {}};
@@ -54,6 +53,7 @@ Reference::Reference(const Problem& problem, double end)
     }
     return rest;
   };
+  Segment segment = atRest(0);
   Real time = 0.0L;
   for (int state = 0; state < 2 && time == 0.0L; ++state)
   {
@@ -146,7 +146,7 @@ Reference::Segment Reference::switched(const Segment& segment, Real time) const
   {
     const Complex z = segment.amplitude[n] * std::exp(from.lambda[n] * (time - segment.start));
     const Complex forced = from.transfer[n] * drive;
-    displacement[n] = z.real() + forced.real();
+    displacement[n] = (z.real() + forced.real()) * (1.0L + disturbance_);
     velocity[n] = (from.lambda[n] * z).real() - drive_frequency_ * forced.imag();
   }
   Segment next{time, 1 - segment.state, {}};

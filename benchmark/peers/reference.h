@@ -13,8 +13,9 @@ namespace vibro_impact::peers
 class Reference
 {
 public:
-  /// From rest to the time `end`. Throws std::runtime_error where it does not say which state the motion starts in.
-  Reference(const Problem& problem, double end);
+  /// From rest to the time `end`; at every switch the displacement is scaled by 1 + `disturbance`. Throws
+  /// std::runtime_error where the state in which the motion starts is not defined.
+  Reference(const Problem& problem, double end, double disturbance = 0.0);
 
   double gap(double time) const;
 
@@ -60,6 +61,7 @@ private:
 
   Eigen::MatrixXd mapping_;
   Real drive_frequency_;
+  Real disturbance_;
   Terms terms_[2];
   std::vector<Segment> segments_;
   std::vector<double> switches_;
