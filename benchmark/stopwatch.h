@@ -12,12 +12,23 @@ inline double wallTime()  ///< s
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+inline double processorTime(clockid_t clock)
+{
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1.0e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// Processor time of the calling thread, s.
 inline double threadTime()
 {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1.0e-9 * static_cast<double>(time.tv_nsec);
+  return processorTime(CLOCK_THREAD_CPUTIME_ID);
+}
+
+/// Processor time of all threads, s.
+inline double processTime()
+{
+  return processorTime(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 /// Processor and day, for the head of a table.

@@ -232,6 +232,9 @@ struct Tuned
   double error;
 };
 
+/// The tolerance of the integration that checks the reference.
+constexpr double tight = 1.0e-13;
+
 constexpr Tuned never{0.0, std::numeric_limits<double>::infinity()};
 
 /// The cheapest setting that is accurate enough, and not by luck: so are the next four, up to half the step or a tenth
@@ -401,9 +404,26 @@ public:
     std::fflush(stdout);
   }
 
+  /// The reference against ourselves and against a tight integration: the greatest differences stand under the table.
+  void check(const Case& c, double omega_star, double own_error, double tight_error, int cycles)
+  {
+    add(c, omega_star, "tight Fehlberg 7(8)", "tolerance", {tight, tight_error}, cycles, 0, {});
+    own_error_ = std::max(own_error_, own_error);
+    tight_error_ = std::max(tight_error_, tight_error);
+  }
+  void finish() const
+  {
+    std::printf(
+        "\ngreatest difference from the reference, by the greatest gap: ours %.1e, Fehlberg 7(8) with the "
+        "tolerance %.0e %.1e\n",
+        own_error_, tight, tight_error_);
+  }
+
 private:
   std::string csv_file_;
   std::ofstream csv_;
+  double own_error_ = 0.0;
+  double tight_error_ = 0.0;
   const std::vector<Competitor>& competitors_;
 };
 
@@ -428,6 +448,9 @@ void compare(const Case& c, const std::vector<double>& omega_stars, const std::v
     const Reference reference(problem, cycles * problem.cycle);
     const auto count = static_cast<std::uint64_t>(cycles);
     const double own_error = ownError(model, problem, reference, count);
+    const double tight_error =
+        peerError(*makeFehlberg78()->prepare(problem, tight), problem, reference, cycles * problem.cycle);
+    report.check(c, omega_star, own_error, tight_error, cycles);
     accurate = accurate && own_error <= accuracy;
 
     core::HarmonicSimulation simulation(model);
@@ -516,6 +539,7 @@ int main(int argc, char** argv)
         compare(c, omega_stars, competitors, quick ? 3 : 10, report);
       }
     }
+    report.finish();
   }
   catch (const std::exception& error)
   {
