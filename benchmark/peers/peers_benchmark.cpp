@@ -1,5 +1,5 @@
 // HarmonicSimulation against what else one could take: the same equations, the same trajectories, no worse accuracy.
-// What is measured and how: README.md of this folder's parent.
+// What is measured and how: doc/benchmarks.md.
 
 #include <algorithm>
 #include <cmath>
@@ -279,7 +279,7 @@ struct Timed
 
 /// Lowers `least` to the time that `work` takes. Processor time leaves out what others do on the machine, wall time the
 /// cost of asking for processor time: the smaller of the two is nearer to the truth.
-void time(const std::function<void()>& work, double& least)
+void measureOnce(const std::function<void()>& work, double& least)
 {
   const double thread = threadTime();
   const double wall = wallTime();
@@ -300,8 +300,8 @@ void measure(std::vector<Timed>& competitors, int rounds)
       const double start = threadTime();
       while (round < 2 || timed.spent < enough)
       {
-        time(timed.set_up, timed.setting_up);
-        time(timed.run, timed.running);
+        measureOnce(timed.set_up, timed.setting_up);
+        measureOnce(timed.run, timed.running);
         if (threadTime() - start > share)
         {
           break;
