@@ -233,7 +233,7 @@ struct Tuned
 };
 
 /// The tolerance of the integration that checks the reference.
-constexpr double tight = 1.0e-13;
+constexpr double tight = 1.0e-12;
 
 constexpr Tuned never{0.0, std::numeric_limits<double>::infinity()};
 
