@@ -1,5 +1,6 @@
 // The classical Runge-Kutta method of fourth order, by hand, at a fixed step.
 
+#include <algorithm>
 #include <cmath>
 
 #include "march.h"
