@@ -118,13 +118,6 @@ void SpanEnergy::open(const Eigen::VectorXd& z, const Moment& now)
   squared_changes_ = squared_slope_ = 0.0;
 }
 
-void SpanEnergy::pass(const Eigen::VectorXd& z, double change, double slope, double length)
-{
-  addScaled(kicks_.data(), change, z.data(), z.size());
-  squared_changes_ += change * change;
-  squared_slope_ += slope * slope * length;
-}
-
 SpanEnergy::Amounts SpanEnergy::upTo(const Eigen::VectorXd& z, const Moment& now) const
 {
   Amounts amounts = antiderivatives(z, now);

@@ -92,6 +92,7 @@ void SwitchedMotion::tabulate(int state)
     if (linear.contact_deflection(n) != 0.0)
     {
       t.gap_body = n;
+      t.body_deflection = linear.contact_deflection(n);
       t.body_pull = linear.contact_deflection(n) * linear.participation(n);
     }
   }
@@ -393,6 +394,7 @@ double SwitchedMotion::bodyVelocity(Eigen::Index n, double time) const
   return z(z.size() / 2 + n) - t * linearState(state_).participation(n) * (acceleration(body_time_) + slope_ * t / 2.0);
 }
 
+/// To the end of the interval.
 void SwitchedMotion::moveBodies()
 {
   Eigen::VectorXd& z = vectors().exponentials;
@@ -469,34 +471,11 @@ void SwitchedMotion::evaluate(const Eigen::VectorXd& exponentials, double time, 
   rate = lineRate(time) + dot(t.derivative.data() + 2 * size, exponentials.data(), size);
 }
 
-double SwitchedMotion::lineGap(double time) const
-{
-  const Tables& t = now();
-  const double line = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_;
-  return t.gap_body < 0
-             ? line
-             : line + linearState(state_).contact_deflection(t.gap_body) * bodyDisplacement(t.gap_body, time);
-}
-
-double SwitchedMotion::lineRate(double time) const
-{
-  const Tables& t = now();
-  const double line = -t.line_compliance * slope_;
-  return t.gap_body < 0 ? line
-                        : line + linearState(state_).contact_deflection(t.gap_body) * bodyVelocity(t.gap_body, time);
-}
-
 double SwitchedMotion::derivative(int order) const
 {
   const Tables& t = now();
   const double body = order == 2 ? -t.body_pull * acceleration(time_) : order == 3 ? -t.body_pull * slope_ : 0.0;
   return body + t.derivative.col(order + 1).dot(vectors().exponentials);
-}
-
-double SwitchedMotion::bodyBound(int order) const
-{
-  const double size = std::abs(now().body_pull);
-  return order == 2 ? size * farthest_ : order == 3 ? size * std::abs(slope_) : 0.0;
 }
 
 void SwitchedMotion::evaluate()
@@ -526,8 +505,7 @@ void SwitchedMotion::refreshBound()
   {
     const Eigen::VectorXd& z = vectors().exponentials;
     const double left = length_ - body_time_;
-    terms += std::abs(linearState(state_).contact_deflection(t.gap_body)) *
-                 (std::abs(z(t.gap_body)) + left * std::abs(z(z.size() / 2 + t.gap_body))) +
+    terms += std::abs(t.body_deflection) * (std::abs(z(t.gap_body)) + left * std::abs(z(z.size() / 2 + t.gap_body))) +
              0.5 * left * left * bodyBound(2);
   }
   resolution_ = gap_rounding * terms;
@@ -553,7 +531,7 @@ void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
     // Displacement and velocity are continuous; the quasi-static part takes the new slope at once and z makes up for
     // it.
     change = slope - slope_;
-    now().energy.pass(vectors().exponentials, change, slope_, length_);
+    now().energy.pass(change, slope_, length_);
     slope_ = slope;
     bound_ += std::abs(change) * now().kick_bound;
   }
@@ -738,7 +716,7 @@ void SwitchedMotion::endHistoryInterval()
 void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
 {
   Vectors& v = vectors();
-  const Tables& t = now();
+  Tables& t = now();
   if (state_ == 1)
   {
     v.before = v.exponentials;
@@ -760,7 +738,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
     const double gap_before = gap_;
     const double rate_before = rate_;
     const Eigen::Index half = t.factor_re.rows();
-    const Forms forms = kickGrowEvaluate(v.exponentials.data(), slope_change, t.kick.data(),
+    const Forms forms = kickGrowEvaluate(v.exponentials.data(), t.energy.kicks(), slope_change, t.kick.data(),
                                          t.factor_re.data() + doublings_ * half, t.factor_im.data() + doublings_ * half,
                                          t.derivative.data() + 2 * half, t.derivative.data() + 4 * half, half);
     time_ = length_;
@@ -773,6 +751,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
   }
   else
   {
+    addScaled(t.energy.kicks(), slope_change, v.exponentials.data(), v.exponentials.size());
     addScaled(v.exponentials.data(), slope_change, t.kick.data(), t.kick.size());
     locateSwitches(sink);
     time_ = length_;
@@ -785,7 +764,10 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
   {
     takeHistory();
   }
-  moveBodies();
+  if (now().bodies > 0)
+  {
+    moveBodies();
+  }
   ++intervals_;
   if (history_ != nullptr)
   {

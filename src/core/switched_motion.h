@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -154,6 +155,7 @@ private:
   {
     Eigen::Index bodies = 0;                  // coordinates without stiffness, which come first
     Eigen::Index gap_body = -1;               // the one of them that moves the gap, or none
+    double body_deflection = 0.0;             // its w
     double body_pull = 0.0;                   // w Gamma of that one
     Eigen::ArrayXd decay, damped;             // -Re lambda, Im lambda, per mode
     Eigen::ArrayXd compliance;                // Gamma/omega^2: quasi-static response to -a
@@ -238,12 +240,26 @@ private:
   void rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const;
   void evaluate();
   void evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const;
-  double lineGap(double time) const;
-  double lineRate(double time) const;
+  double lineGap(double time) const
+  {
+    const Tables& t = now();
+    const double line = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_;
+    return t.gap_body < 0 ? line : line + t.body_deflection * bodyDisplacement(t.gap_body, time);
+  }
+  double lineRate(double time) const
+  {
+    const Tables& t = now();
+    const double line = -t.line_compliance * slope_;
+    return t.gap_body < 0 ? line : line + t.body_deflection * bodyVelocity(t.gap_body, time);
+  }
   /// The second or a higher derivative of the gap now.
   double derivative(int order) const;
   /// Bounds the same derivative of the polynomial p in the present interval.
-  double bodyBound(int order) const;
+  double bodyBound(int order) const
+  {
+    const double size = std::abs(now().body_pull);
+    return order == 2 ? size * farthest_ : order == 3 ? size * std::abs(slope_) : 0.0;
+  }
   double curvatureBound() const
   {
     return bound_ + bodyBound(2);
