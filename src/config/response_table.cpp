@@ -53,6 +53,10 @@ const std::vector<Column<ImpactRow>> impact_columns = {
     {"peak_force", &ImpactRow::peak_force},
     {"approach_speed", &ImpactRow::approach_speed},
     {"separation_speed", &ImpactRow::separation_speed},
+    {"energy_lost", &ImpactRow::energy_lost},
+    {"dissipated", &ImpactRow::dissipated},
+    {"mapping_loss", &ImpactRow::mapping_loss},
+    {"base_work", &ImpactRow::base_work},
 };
 
 std::string cell(double value)
@@ -212,7 +216,8 @@ OutputFile impactTable(const std::vector<core::Response>& responses)
     {
       const core::Impact& impact = captured.impact;
       rows.push_back({response.row.omega_star, impact.number, captured.onset, impact.duration, impact.impulse,
-                      impact.peak_force, impact.approach_speed, impact.separation_speed});
+                      impact.peak_force, impact.approach_speed, impact.separation_speed, impact.energy_lost,
+                      impact.dissipated, impact.mapping_loss, impact.base_work});
     }
   }
   return {"impacts.csv", writeTable(impact_columns, rows)};

@@ -53,6 +53,7 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
                          last_input_ ? std::optional<double>((ros::SteadyTime::now() - *last_input_).toSec())
                                      : std::nullopt;
                      statistics_.report(age, status);
+                     report(simulation_.energyAccount(), status);
                    });
   diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
                                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });

@@ -75,6 +75,11 @@ void StreamSimulation::rest()
   }
 }
 
+core::EnergyAccount StreamSimulation::energyAccount() const
+{
+  return simulation_ ? simulation_->energyAccount() : core::EnergyAccount();
+}
+
 void StreamSimulation::onImpact(const core::Impact& impact)
 {
   StampedImpact stamped{impact, 0};

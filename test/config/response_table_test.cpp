@@ -24,7 +24,8 @@ const std::string response_header =
     "omega_star,frequency_hz,acceleration,period,steady,impacts,impacts_per_cycle,impulse_mean,impulse_min,impulse_max,"
     "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean";
 const std::string impact_header =
-    "omega_star,number,onset_s,duration_s,impulse,peak_force,approach_speed,separation_speed";
+    "omega_star,number,onset_s,duration_s,impulse,peak_force,approach_speed,separation_speed,energy_lost,dissipated,"
+    "mapping_loss,base_work";
 
 std::vector<core::Response> someResponses()
 {
@@ -40,6 +41,10 @@ std::vector<core::Response> someResponses()
   impact.peak_force = 1.0e3 / 7.0;
   impact.approach_speed = 0.25;
   impact.separation_speed = 0.2;
+  impact.energy_lost = 3e-6;
+  impact.dissipated = 1e-6;
+  impact.mapping_loss = 2e-6;
+  impact.base_work = -4e-6;
   loud.captured = {{1.25, impact}, {1.5, impact}};
   return {quiet, loud};
 }
@@ -75,10 +80,11 @@ TEST(ResponseTable, HasTheColumnsOfTheContract)
                 "\n0.5,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0"
                 "\n0.3333333333333333,90.5,1,2,1,2,1,0.1,0.05,0.15,1e-07,2e-07,3e-07,0.1,1000,0.0007\n");
   EXPECT_EQ(impactTable(responses).name, "impacts.csv");
-  EXPECT_EQ(impactTable(responses).text,
-            impact_header +
-                "\n0.3333333333333333,12345678901234,1.25,0.0007,0.1,142.85714285714286,0.25,0.2"
-                "\n0.3333333333333333,12345678901234,1.5,0.0007,0.1,142.85714285714286,0.25,0.2\n");
+  EXPECT_EQ(
+      impactTable(responses).text,
+      impact_header +
+          "\n0.3333333333333333,12345678901234,1.25,0.0007,0.1,142.85714285714286,0.25,0.2,3e-06,1e-06,2e-06,-4e-06"
+          "\n0.3333333333333333,12345678901234,1.5,0.0007,0.1,142.85714285714286,0.25,0.2,3e-06,1e-06,2e-06,-4e-06\n");
   EXPECT_EQ(responseTable({}).text, response_header + "\n");
 }
 
@@ -122,6 +128,10 @@ TEST(ResponseTable, ReadsBackExactly)
   EXPECT_EQ(impacts[1].peak_force, captured.impact.peak_force);
   EXPECT_EQ(impacts[1].approach_speed, captured.impact.approach_speed);
   EXPECT_EQ(impacts[1].separation_speed, captured.impact.separation_speed);
+  EXPECT_EQ(impacts[1].energy_lost, captured.impact.energy_lost);
+  EXPECT_EQ(impacts[1].dissipated, captured.impact.dissipated);
+  EXPECT_EQ(impacts[1].mapping_loss, captured.impact.mapping_loss);
+  EXPECT_EQ(impacts[1].base_work, captured.impact.base_work);
 }
 
 TEST(ResponseTable, FindsColumnsByName)
@@ -129,13 +139,15 @@ TEST(ResponseTable, FindsColumnsByName)
   const TemporaryDirectory directory;
   const std::string path = directory.file("impacts.csv",
                                           "note,number,omega_star,duration_s,onset_s,impulse,peak_force,approach_speed,"
-                                          "separation_speed\r\nfine,7,1.5,2,3,4,5,6,8\r\n");
+                                          "separation_speed,energy_lost,mapping_loss,dissipated,base_work\r\n"
+                                          "fine,7,1.5,2,3,4,5,6,8,9,10,11,12\r\n");
   const std::vector<ImpactRow> rows = readImpactTable(path);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].number, 7u);
   EXPECT_EQ(rows[0].omega_star, 1.5);
   EXPECT_EQ(rows[0].onset_s, 3.0);
   EXPECT_EQ(rows[0].separation_speed, 8.0);
+  EXPECT_EQ(rows[0].dissipated, 11.0);
 }
 
 TEST(ResponseTable, SaysWhatIsWrongAndWhere)

@@ -82,7 +82,8 @@ TEST(ImpactConversion, comesBackUnchanged)
 {
   graph::StampedImpact impact;
   impact.stamp = stamp;
-  impact.impact = {3, 1000000000007ull, 1.1e-5, 2.2e-4, 3.3e-3, 4.4, 5.5e-5, 0.66, 0.77, 8.8e-6, true};
+  impact.impact = {3,    1000000000007ull, 1.1e-5, 2.2e-4, 3.3e-3, 4.4,    5.5e-5, 0.66,
+                   0.77, 8.8e-6,           true,   5.5e-6, 3.3e-6, -1.1e-6};
   vibro_impact::Impact message;
   graph::toMessage(impact, message);
   EXPECT_EQ(message.header.stamp, ros::Time(1700000000, 123456789));
@@ -97,6 +98,9 @@ TEST(ImpactConversion, comesBackUnchanged)
   EXPECT_EQ(message.approach_speed, 0.66);
   EXPECT_EQ(message.separation_speed, 0.77);
   EXPECT_EQ(message.energy_lost, 8.8e-6);
+  EXPECT_EQ(message.dissipated, 5.5e-6);
+  EXPECT_EQ(message.mapping_loss, 3.3e-6);
+  EXPECT_EQ(message.base_work, -1.1e-6);
   EXPECT_TRUE(message.cut_short);
 
   const graph::StampedImpact back = graph::fromMessage(message);
@@ -112,6 +116,9 @@ TEST(ImpactConversion, comesBackUnchanged)
   EXPECT_EQ(back.impact.separation_speed, impact.impact.separation_speed);
   EXPECT_EQ(back.impact.energy_lost, impact.impact.energy_lost);
   EXPECT_EQ(back.impact.cut_short, impact.impact.cut_short);
+  EXPECT_EQ(back.impact.dissipated, impact.impact.dissipated);
+  EXPECT_EQ(back.impact.mapping_loss, impact.impact.mapping_loss);
+  EXPECT_EQ(back.impact.base_work, impact.impact.base_work);
 }
 
 core::SystemParameters limitingCase()

@@ -6,6 +6,7 @@
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
+#include "vibro_impact/core/energy_account.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
 namespace vibro_impact::graph
@@ -55,5 +56,8 @@ private:
   std::string last_refusal_;
   std::string publishers_;
 };
+
+/// The entries of an energy account (J), and how well it closes.
+void report(const core::EnergyAccount& account, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace vibro_impact::graph

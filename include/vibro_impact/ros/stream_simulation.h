@@ -47,6 +47,9 @@ public:
   /// Back to rest; the next block starts a stream. An open episode is answered as cut short.
   const Answer& reset();
 
+  /// Of the stream since it began, anew or from rest; nothing before the first block.
+  core::EnergyAccount energyAccount() const;
+
 private:
   void onImpact(const core::Impact& impact) override;
   void bridge(std::uint64_t missing, double from, double to);
