@@ -1,5 +1,6 @@
 #include "span_energy.h"
 
+#include <cmath>
 #include <complex>
 
 #include "lanes.h"
