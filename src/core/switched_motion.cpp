@@ -682,11 +682,11 @@ void SwitchedMotion::beginHistoryPiece()
 void SwitchedMotion::takeHistory()
 {
   Vectors& v = vectors();
-  const auto sampleTime = [this](std::size_t number)
+  const auto sample_time = [this](std::size_t number)
   { return length_ * (static_cast<double>(number) / static_cast<double>(history_size_)); };
-  for (; history_taken_ + 1 < history_size_ && sampleTime(history_taken_ + 1) <= time_; ++history_taken_)
+  for (; history_taken_ + 1 < history_size_ && sample_time(history_taken_ + 1) <= time_; ++history_taken_)
   {
-    const double time = sampleTime(history_taken_ + 1);
+    const double time = sample_time(history_taken_ + 1);
     v.trial = v.history;
     rotateTicks(v.trial, static_cast<std::int64_t>(std::llround((time - history_start_) / tick_)));
     HistorySample& sample = *history_++;

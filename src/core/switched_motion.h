@@ -268,7 +268,7 @@ private:
   double bodyDisplacement(Eigen::Index n, double time) const;
   double bodyVelocity(Eigen::Index n, double time) const;
   void moveBodies();
-  double bodyEnergy(const Eigen::VectorXd& exponentials, double time) const;
+  double bodyEnergy(const Eigen::VectorXd& z, double time) const;
   /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own,
   /// but for bodyBound().
   double boundOfDerivative(int order) const;
