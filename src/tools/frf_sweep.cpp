@@ -72,14 +72,8 @@ Arguments interpret(const tools::Given& given)
       throw tools::UsageError("--" + std::string(option) + " is missing");
     }
   }
-  const std::size_t files =
-      given["configuration"].empty() ? 0 : given["configuration"].as<std::vector<std::string>>().size();
-  if (files != 1)
-  {
-    throw tools::UsageError(std::to_string(files) + " configuration files are given: must be one");
-  }
   Arguments arguments;
-  arguments.configuration = given["configuration"].as<std::vector<std::string>>().front();
+  arguments.configuration = tools::onlyFile(given, "configuration", "configuration file");
   arguments.out = given["out"].as<std::string>();
   config::SweepOptions& sweep = arguments.sweep;
   sweep.from = tools::number(given, "from", 1.0e-3, 1.0e5);

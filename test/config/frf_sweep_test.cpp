@@ -7,12 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "temporary_directory.h"
+#include "tool_test.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/number.h"
 #include "vibro_impact/config/response_table.h"
@@ -21,45 +20,15 @@ namespace vibro_impact::config
 {
 namespace
 {
-using testing::AllOf;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 const std::string limiting_case = std::string(CONFIG_DIRECTORY) + "/limiting_case.yaml";
 
-struct Outcome
-{
-  int status = -1;
-  std::string out;
-  std::string error;
-};
-
-class FrfSweep : public testing::Test
+class FrfSweep : public ToolTest
 {
 protected:
-  Outcome run(const std::string& arguments) const
+  FrfSweep() : ToolTest(FRF_SWEEP, "frf_sweep")
   {
-    const std::string out = directory_.path() + "/stdout";
-    const std::string error = directory_.path() + "/stderr";
-    const std::string command = std::string(FRF_SWEEP) + " " + arguments + " >" + out + " 2>" + error + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(error)};
-  }
-
-  std::string results(const std::string& name = "results") const
-  {
-    return directory_.path() + "/" + name;
-  }
-
-  /// Expects a refusal with one line that holds `reason`, and no results.
-  void expectRefusal(const std::string& arguments, int status, const std::string& reason) const
-  {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, status) << arguments;
-    EXPECT_EQ(outcome.out, "") << arguments;
-    EXPECT_THAT(outcome.error, AllOf(StartsWith("frf_sweep: "), HasSubstr(reason))) << arguments;
-    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
-    EXPECT_FALSE(std::filesystem::exists(results())) << arguments;
   }
 
   /// The value of a key of model.csv.
@@ -75,8 +44,6 @@ protected:
     const std::size_t begin = at + key.size() + 2;
     return parseNumber(text.substr(begin, text.find('\n', begin) - begin)).value_or(0.0);
   }
-
-  TemporaryDirectory directory_;
 };
 
 TEST_F(FrfSweep, WritesTheTables)
