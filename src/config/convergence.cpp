@@ -322,7 +322,8 @@ BasisRun runBasis(const core::SystemParameters& parameters, int modes, double om
     return run;
   }
 
-  simulation.advance(options.statistics_cycles, collector);
+  // And one cycle, in which an episode that has begun before comes to its end.
+  simulation.advance(options.statistics_cycles + 1, collector);
   evaluate(run, *model, step(), collector.impacts, options.cycles + options.statistics_cycles);
   if (run.period > 0)
   {
@@ -331,7 +332,7 @@ BasisRun runBasis(const core::SystemParameters& parameters, int modes, double om
   std::vector<CountedImpact> counted;
   for (const core::Impact& impact : collector.impacts)
   {
-    if (impact.interval >= options.cycles)
+    if (impact.interval >= options.cycles && impact.interval < options.cycles + options.statistics_cycles)
     {
       counted.push_back({impact.interval - options.cycles, impact.impulse});
       run.impulse_min = counted.size() == 1 ? impact.impulse : std::min(run.impulse_min, impact.impulse);
