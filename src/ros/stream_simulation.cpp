@@ -31,6 +31,10 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
     }
     first_seq_ = excitation.seq;
     carried_over_ = false;
+    if (observer_ != nullptr)
+    {
+      observer_->onStart(excitation.stamp, excitation.sample_period);
+    }
   }
 
   const std::uint64_t switch_limits = simulation_->switchLimitReached();
@@ -51,7 +55,7 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
     answer->sample_period = excitation.sample_period;
     answer->values.resize(count);
   }
-  simulation_->advance(excitation.values.data(), count, answer_.gap.values.data(), answer_.force.values.data(), *this);
+  take(excitation.values.data(), count, answer_.gap.values.data(), answer_.force.values.data());
 
   carried_over_ = was_in_contact && simulation_->inContact() && answer_.impacts.size() == cut_short;
   answer_.switch_limits = simulation_->switchLimitReached() - switch_limits;
@@ -77,10 +81,28 @@ void StreamSimulation::rest()
 
 void StreamSimulation::onImpact(const core::Impact& impact)
 {
+  if (observer_ != nullptr)
+  {
+    observer_->onImpact(impact);
+  }
   StampedImpact stamped{impact, 0};
   stamped.impact.interval += first_seq_;
   stamped.stamp = rules_.clock().at(stamped.impact.interval) + std::llround(impact.offset * 1.0e9);
   answer_.impacts.push_back(stamped);
+}
+
+void StreamSimulation::take(const double* acceleration, std::size_t count, double* gap, double* force)
+{
+  if (observer_ == nullptr)
+  {
+    simulation_->advance(acceleration, count, gap, force, *this);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    simulation_->advance(acceleration + i, 1, gap + i, force + i, *this);
+    observer_->onSample(simulation_->sample());
+  }
 }
 
 void StreamSimulation::bridge(std::uint64_t missing, double from, double to)
@@ -97,7 +119,7 @@ void StreamSimulation::bridge(std::uint64_t missing, double from, double to)
     {
       acceleration[i] = from + slope * static_cast<double>(first + i + 1);
     }
-    simulation_->advance(acceleration.data(), count, gap.data(), force.data(), *this);
+    take(acceleration.data(), count, gap.data(), force.data());
   }
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
 #include "vibro_impact/core/simulation.h"
 #include "vibro_impact/core/switched_model.h"
@@ -18,6 +20,16 @@ struct StampedImpact
 {
   core::Impact impact;  ///< `interval` is the number (seq) of the excitation sample at or before the onset
   Stamp stamp = 0;      ///< of the onset: the time of that sample plus the offset, ns
+};
+
+/// Who wants the motion at every sample, those of bridged gaps included, and the impacts as they end.
+class MotionObserver : public core::ImpactSink
+{
+public:
+  /// From here on samples and intervals count from zero: the model is at rest at the sample of this stamp, and one
+  /// follows every `sample_period` (s).
+  virtual void onStart(Stamp stamp, double sample_period) = 0;
+  virtual void onSample(const core::HistorySample& sample) = 0;
 };
 
 /// A simulation that follows an excitation stream by the rules of time. Its time is the stream's: it never asks a
@@ -44,11 +56,18 @@ public:
   /// the state untouched. The answer holds until the next call.
   const Answer& advance(const Samples& excitation);
 
+  /// Tells `observer`, which must outlive the simulation, of all that is to come. The answers do not depend on it.
+  void observe(MotionObserver& observer)
+  {
+    observer_ = &observer;
+  }
+
   /// Back to rest; the next block starts a stream. An open episode is answered as cut short.
   const Answer& reset();
 
 private:
   void onImpact(const core::Impact& impact) override;
+  void take(const double* acceleration, std::size_t count, double* gap, double* force);
   void bridge(std::uint64_t missing, double from, double to);
   void clearAnswer();
   void rest();
@@ -58,6 +77,7 @@ private:
   std::optional<core::SampledSimulation> simulation_;
   std::uint64_t first_seq_ = 0;  ///< the sample that found the model at rest
   bool carried_over_ = false;    ///< the open episode began before the block taken last
+  MotionObserver* observer_ = nullptr;
   Answer answer_;
 };
 
