@@ -211,7 +211,7 @@ private:
 /// The script that draws, which is installed beside this program.
 std::string plotScript()
 {
-  const std::string script = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plot_simulation";
+  std::string script = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "plot_simulation";
   if (access(script.c_str(), X_OK) != 0)
   {
     throw std::runtime_error("--plot: " + script + ": " + std::strerror(errno));
