@@ -186,6 +186,29 @@ TEST(SimulateHarmonic, BeginsInTheGivenMotion)
   }
 }
 
+TEST(SimulateHarmonic, ClosesItsEnergyAccount)
+{
+  core::InitialMotion motion;
+  motion.structure1.velocity = {0.01};
+  HarmonicRunOptions options;
+  options.omega_star = 1.6;
+  options.samples_per_cycle = 20;
+  const SimulatedRun run = simulateHarmonic(limitingCase(), options, motion, {}, ignore);
+  EXPECT_NEAR(run.energy.initial, 0.5e-4, 1e-15);
+  EXPECT_GT(run.energy.dissipated_free, 0.0);
+  EXPECT_GT(run.energy.dissipated_contact, 0.0);
+  EXPECT_LT(run.energy.closure(), 1e-9);
+  for (const HistoryRow& row : run.history)
+  {
+    EXPECT_LT(std::abs(row.energy_residual), 1e-9 * run.energy.turnover);
+  }
+  const HistoryRow& last = run.history.back();
+  EXPECT_EQ(last.base_work, run.energy.work);
+  EXPECT_EQ(value(run, "energy_initial"), run.energy.initial);
+  EXPECT_EQ(value(run, "base_work"), run.energy.work);
+  EXPECT_EQ(value(run, "energy_closure"), run.energy.closure());
+}
+
 TEST(SimulateHarmonic, RefusesAMotionThatTheStructureDoesNotHave)
 {
   core::InitialMotion motion;
@@ -221,6 +244,7 @@ TEST(SimulateSampled, IsBitForBitWhatASimulationOfBlocksGives)
     EXPECT_EQ(run.impacts[i].impulse, impacts.list[i].impulse);
     EXPECT_EQ(run.impacts[i].cut_short, impacts.list[i].cut_short);
   }
+  EXPECT_LT(run.energy.closure(), 1e-9);
   EXPECT_FALSE(value(run, "omega_star"));
 }
 
