@@ -184,12 +184,16 @@ void compareWithLarger(Convergence& result, double accuracy)
   }
 }
 
-// The smallest basis that agrees with all larger ones, if the largest has twice as many coordinates that matter: where
-// added modes have a node at the contact, or hardly move it, agreement with the next basis proves nothing.
+// The smallest basis that agrees with all larger ones, if the largest has twice as many coordinates that matter or all
+// there are: where added modes have a node at the contact, agreement with the next basis proves nothing.
 std::optional<std::size_t> findSettled(const Convergence& result)
 {
   for (std::size_t i = 0; i < result.runs.size(); ++i)
   {
+    if (result.complete && (result.runs[i].agrees || i + 1 == result.runs.size()))
+    {
+      return i;
+    }
     if (result.runs[i].agrees)
     {
       return result.runs.back().moving_coordinates >= 2 * result.runs[i].moving_coordinates
@@ -302,6 +306,7 @@ BasisRun runBasis(const core::SystemParameters& parameters, int modes, double om
   run.highest_frequency_hz = summary.contact_frequencies.back();
   run.mapping_loss = *std::max_element(summary.mapping_loss.begin(), summary.mapping_loss.end());
   const Eigen::ArrayXd deflection = model->free().contact_deflection.abs();
+  run.coordinates = static_cast<int>(model->free().size());
   run.moving_coordinates = static_cast<int>((deflection > 1.0e-9 * deflection.maxCoeff()).count());
 
   const double frequency = omega_star * model->scales().frequency;
@@ -351,6 +356,9 @@ Convergence convergeAt(core::SystemParameters parameters, double omega_star, con
 {
   Convergence result;
   result.omega_star = omega_star;
+  parameters.basis = withModes(parameters.basis, options.most_modes);
+  const Eigen::Index most_coordinates =
+      core::findFaults(parameters).empty() ? core::SwitchedModel(parameters).free().size() : 0;
   for (int modes = 1; !result.settled; modes = std::min(nextModes(modes), options.most_modes))
   {
     parameters.basis = withModes(parameters.basis, modes);
@@ -360,9 +368,11 @@ Convergence convergeAt(core::SystemParameters parameters, double omega_star, con
     }
     result.runs.push_back(runBasis(parameters, modes, omega_star, options));
     ++runs;
+    // A modal table has no more modes than it lists.
+    result.complete = modes < options.most_modes && result.runs.back().coordinates == most_coordinates;
     compareWithLarger(result, options.accuracy);
     result.settled = findSettled(result);
-    if (modes >= options.most_modes)
+    if (modes >= options.most_modes || result.complete)
     {
       break;
     }

@@ -166,8 +166,8 @@ TEST(SimulateHarmonic, BeginsInTheGivenMotion)
   parameters.contact.clearance = 1.0;
   const auto beam = model(parameters);
   const double frequency = beam->scales().frequency;
-  const double mass_per_length = parameters.beam1.density * parameters.beam1.width * parameters.beam1.height;
-  const double shape = std::sqrt(2.0 / (mass_per_length * parameters.beam1.length));  // phi_1 at midspan
+  const double mass = 954.0 * 0.0529 * 0.00127 * 0.0127;  // rho L h b
+  const double shape = std::sqrt(2.0 / mass);             // phi_1 at midspan
   core::InitialMotion motion;
   motion.structure1.displacement = {2.0e-6};
   motion.structure1.velocity = {3.0e-3};

@@ -80,6 +80,7 @@ struct BasisRun
   std::optional<double> contact_frequency_hz;  ///< the same of S1
   double highest_frequency_hz = 0.0;           ///< of S1
   double mapping_loss = 0.0;                   ///< greatest share of a mode's energy that a switch loses, 1
+  int coordinates = 0;                         ///< of S0
   int moving_coordinates = 0;                  ///< coordinates of S0 that move the gap
 
   int period = 0;                              ///< in drive cycles; 0: none up to 16
@@ -105,8 +106,9 @@ struct Convergence
 {
   double omega_star = 0.0;
   std::vector<BasisRun> runs;  ///< by ascending number of modes
+  bool complete = false;       ///< the last of them has all modes that the structures have
   /// Index of the smallest basis that agrees with all larger ones, up to one that has at least twice as many
-  /// coordinates that move the gap; nothing if there is none.
+  /// coordinates that move the gap, or is complete; nothing if there is none.
   std::optional<std::size_t> settled;
 };
 
