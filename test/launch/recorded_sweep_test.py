@@ -64,8 +64,9 @@ class RecordedSweep(unittest.TestCase):
         self.assertIn("0 bridged, 0 restarts from rest, 0 blocks refused", report)
         simulated = table(os.path.join(out, "impacts.csv"))
         with rosbag.Bag(self.bag) as bag:
-            period = next(bag.read_messages("/base_excitation")).message.sample_period
-            recorded = [record.message for record in bag.read_messages("/impact")]
+            topics = {info.msg_type: topic for topic, info in bag.get_type_and_topic_info().topics.items()}
+            period = next(bag.read_messages(topics["vibro_impact/BaseExcitation"])).message.sample_period
+            recorded = [record.message for record in bag.read_messages(topics["vibro_impact/Impact"])]
         self.assertGreater(len(recorded), POINTS * CYCLES // 2)
         # What is cut short by the end of the stream is published when the node ends.
         self.assertIn(len(simulated) - len(recorded), (0, 1))
