@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "text_file.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/config/number.h"
 
@@ -107,23 +108,6 @@ std::string writeTable(const std::vector<Column<Row>>& columns, const std::vecto
   return text + '\n';
 }
 
-std::vector<std::string> split(std::string line)
-{
-  if (!line.empty() && line.back() == '\r')
-  {
-    line.pop_back();
-  }
-  std::vector<std::string> cells;
-  std::size_t begin = 0;
-  for (std::size_t end = line.find(','); end != std::string::npos; end = line.find(',', begin))
-  {
-    cells.push_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  cells.push_back(line.substr(begin));
-  return cells;
-}
-
 template <typename Row>
 std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row>>& columns)
 {
@@ -143,7 +127,7 @@ std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row
   {
     throw Error(path + ": is empty: must be a table that starts with the names of its columns");
   }
-  const std::vector<std::string> names = split(line);
+  const std::vector<std::string> names = splitCells(line);
   std::vector<std::size_t> positions;
   std::string missing;
   for (const auto& column : columns)
@@ -164,7 +148,7 @@ std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row
   for (std::size_t number = 2; std::getline(file, line); ++number)
   {
     const std::string place = path + ": line " + std::to_string(number);
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = splitCells(line);
     if (cells.size() != names.size())
     {
       throw Error(place + ": has " + std::to_string(cells.size()) + " columns: must have " +

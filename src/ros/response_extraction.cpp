@@ -102,7 +102,7 @@ public:
     {
       throw config::Error("topic " + topics_.model_info + ": holds no message");
     }
-    return core::referenceScales(fromMessage(*info_).beam1);
+    return core::referenceScales(fromMessage(*info_));
   }
 
   // On the stream's time axis, by ascending onset.

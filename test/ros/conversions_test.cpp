@@ -117,7 +117,7 @@ TEST(ImpactConversion, comesBackUnchanged)
 core::SystemParameters limitingCase()
 {
   core::SystemParameters parameters;
-  parameters.beam1 = {1.66e9, 954.0, 0.0529, 0.00127, 0.0127, 0.02645};
+  parameters.beam1 = core::BeamParameters{1.66e9, 954.0, 0.0529, core::Rectangle{0.00127, 0.0127}, 0.02645};
   parameters.beam2 = core::RigidSurface{};
   parameters.contact = {24309.426302924, 0.0};
   parameters.damping = {0.01, 0.05};
@@ -149,7 +149,7 @@ TEST(ModelInfoConversion, configurationLoadsBack)
   vibro_impact::ModelInfo message;
   graph::toMessage(core::SwitchedModel(parameters), vibro_impact::config::toYaml(parameters), "1.2.3", message);
   const core::SystemParameters back = graph::fromMessage(message);
-  EXPECT_EQ(back.beam1.length, parameters.beam1.length);
+  EXPECT_EQ(std::get<core::BeamParameters>(back.beam1).length, std::get<core::BeamParameters>(parameters.beam1).length);
   EXPECT_EQ(back.contact.stiffness, parameters.contact.stiffness);
   EXPECT_TRUE(std::holds_alternative<core::RigidSurface>(back.beam2));
   EXPECT_EQ(std::get<core::ConjoinedBasis>(back.basis).modes_contact, 3);

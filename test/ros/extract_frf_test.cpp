@@ -58,7 +58,7 @@ struct Sweep
   /// Rows of the response table by the steps as they were played.
   std::vector<core::ResponseRow> expected(const SyntheticRun& run) const
   {
-    const core::ReferenceScales scales = core::referenceScales(limitingCase().beam1);
+    const core::ReferenceScales scales = core::referenceScales(limitingCase());
     std::vector<core::ResponseRow> rows;
     for (const core::DriveStep& step : steps)
     {

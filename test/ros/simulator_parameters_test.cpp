@@ -58,9 +58,9 @@ void expectFaults(const XmlRpcValue& tree, const std::vector<std::string>& parts
 TEST(SimulatorParameters, modelIsRead)
 {
   const SimulatorParameters parameters = parseSimulatorParameters(goodTree(), "/simulator");
-  EXPECT_EQ(parameters.system.beam1.youngs_modulus, 1.66e9);
-  EXPECT_EQ(parameters.system.beam1.density, 954.0);
-  EXPECT_EQ(parameters.system.beam1.length, 0.0529);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.system.beam1).youngs_modulus, 1.66e9);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.system.beam1).density, 954.0);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.system.beam1).length, 0.0529);
   EXPECT_EQ(parameters.system.contact.stiffness, 24309.426302924);
   EXPECT_TRUE(std::holds_alternative<core::RigidSurface>(parameters.system.beam2));
   EXPECT_EQ(std::get<core::AttachmentBasis>(parameters.system.basis).modes_per_beam, 3);

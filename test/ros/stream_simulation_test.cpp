@@ -28,7 +28,7 @@ constexpr std::size_t block_size = 250;
 std::shared_ptr<const core::SwitchedModel> model(double clearance = 0.0)
 {
   core::SystemParameters parameters;
-  parameters.beam1 = {1.66e9, 954.0, 0.0529, 0.00127, 0.0127, 0.02645};
+  parameters.beam1 = core::BeamParameters{1.66e9, 954.0, 0.0529, core::Rectangle{0.00127, 0.0127}, 0.02645};
   parameters.beam2 = core::RigidSurface{};
   parameters.contact = {24309.426302924, clearance};
   parameters.damping = {0.01, 0.05};

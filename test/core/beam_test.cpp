@@ -1,4 +1,4 @@
-#include "vibro_impact/core/pinned_beam.h"
+#include "vibro_impact/core/beam.h"
 
 #include <cmath>
 
@@ -20,7 +20,7 @@ BeamParameters beamWithContactAt(double share)
 }
 
 /// sum_m phi_m^2/(omega_m^2 - omega^2) by brute force, small terms first.
-double receptanceBySummation(const PinnedBeam& beam, double omega, int modes)
+double receptanceBySummation(const Beam& beam, double omega, int modes)
 {
   double sum = 0.0;
   for (int m = modes; m >= 1; --m)
@@ -32,38 +32,38 @@ double receptanceBySummation(const PinnedBeam& beam, double omega, int modes)
 }
 }  // namespace
 
-TEST(PinnedBeam, hasThePapersLowestFrequency)
+TEST(Beam, hasThePapersLowestFrequency)
 {
-  EXPECT_NEAR(PinnedBeam(paperBeam()).mode(1).frequency, 1705.6, 0.05);
-  EXPECT_NEAR(PinnedBeam(paperBeam()).mode(1).frequency / (2.0 * pi), 271.5, 0.05);
+  EXPECT_NEAR(Beam(paperBeam()).mode(1).frequency, 1705.6, 0.05);
+  EXPECT_NEAR(Beam(paperBeam()).mode(1).frequency / (2.0 * pi), 271.5, 0.05);
 }
 
-TEST(PinnedBeam, participationsSumToTheMassOfTheBeam)
+TEST(Beam, participationsSumToTheMassOfTheBeam)
 {
   // sum Gamma^2 = m L: the whole beam takes part in base motion. The rest above M falls as 8 m L/(pi^2 2 M).
-  const PinnedBeam beam(paperBeam());
+  const Beam beam(paperBeam());
   double sum = 0.0;
   for (int m = 1; m <= 20000; ++m)
   {
     sum += std::pow(beam.mode(m).participation, 2);
   }
-  const double mass = beam.massPerLength() * paperBeam().length;
+  const double mass = massPerLength(paperBeam()) * paperBeam().length;
   EXPECT_NEAR(sum / mass, 1.0, 4.0 / (pi * pi * 20000.0) * 1.01);
 }
 
-TEST(PinnedBeam, contactAtANodeMovesNothing)
+TEST(Beam, contactAtANodeMovesNothing)
 {
-  EXPECT_EQ(PinnedBeam(beamWithContactAt(0.5)).mode(2).contact_deflection, 0.0);
-  EXPECT_EQ(PinnedBeam(beamWithContactAt(0.5)).mode(100).contact_deflection, 0.0);
-  EXPECT_EQ(PinnedBeam(beamWithContactAt(1.0 / 3.0)).mode(3).contact_deflection, 0.0);
-  EXPECT_NE(PinnedBeam(beamWithContactAt(0.501)).mode(2).contact_deflection, 0.0);
+  EXPECT_EQ(Beam(beamWithContactAt(0.5)).mode(2).contact_deflection, 0.0);
+  EXPECT_EQ(Beam(beamWithContactAt(0.5)).mode(100).contact_deflection, 0.0);
+  EXPECT_EQ(Beam(beamWithContactAt(1.0 / 3.0)).mode(3).contact_deflection, 0.0);
+  EXPECT_NE(Beam(beamWithContactAt(0.501)).mode(2).contact_deflection, 0.0);
 }
 
-TEST(PinnedBeam, staticDeflectionsEqualTheirModalSums)
+TEST(Beam, staticDeflectionsEqualTheirModalSums)
 {
   for (const double share : {0.5, 0.3, 0.05, 0.9})
   {
-    const PinnedBeam beam(beamWithContactAt(share));
+    const Beam beam(beamWithContactAt(share));
     double response = 0.0;
     for (int m = 2001; m >= 1; --m)
     {
@@ -75,11 +75,11 @@ TEST(PinnedBeam, staticDeflectionsEqualTheirModalSums)
   }
 }
 
-TEST(PinnedBeam, staticDeflectionsWithoutTheKeptModesEqualTheSumsOfTheOthers)
+TEST(Beam, staticDeflectionsWithoutTheKeptModesEqualTheSumsOfTheOthers)
 {
   for (const double share : {0.5, 0.3, 0.05})
   {
-    const PinnedBeam beam(beamWithContactAt(share));
+    const Beam beam(beamWithContactAt(share));
     for (const int kept : {1, 2, 5, 20, 100})
     {
       double receptance = 0.0;
@@ -97,17 +97,18 @@ TEST(PinnedBeam, staticDeflectionsWithoutTheKeptModesEqualTheSumsOfTheOthers)
   }
 }
 
-TEST(PinnedBeam, midspanStiffnessIs48EIOverL3)
+TEST(Beam, midspanStiffnessIs48EIOverL3)
 {
-  const PinnedBeam beam(paperBeam());
-  EXPECT_NEAR(beam.staticReceptance(0) * 48.0 * beam.bendingStiffness() / std::pow(paperBeam().length, 3), 1.0, 1e-14);
+  const Beam beam(paperBeam());
+  EXPECT_NEAR(beam.staticReceptance(0) * 48.0 * bendingStiffness(paperBeam()) / std::pow(paperBeam().length, 3), 1.0,
+              1e-14);
 }
 
-TEST(PinnedBeam, receptanceEqualsItsModalSumAtAnyFrequency)
+TEST(Beam, receptanceEqualsItsModalSumAtAnyFrequency)
 {
   for (const double share : {0.5, 0.3, 0.07})
   {
-    const PinnedBeam beam(beamWithContactAt(share));
+    const Beam beam(beamWithContactAt(share));
     const double lowest = beam.mode(1).frequency;
     for (const double relative : {0.0, 1e-6, 0.003, 0.00406, 0.0041, 0.1, 0.7, 1.3, 3.1, 7.7, 15.0, 47.3})
     {
@@ -120,16 +121,16 @@ TEST(PinnedBeam, receptanceEqualsItsModalSumAtAnyFrequency)
   }
 }
 
-TEST(PinnedBeam, receptanceDoesNotOverflowFarAbove)
+TEST(Beam, receptanceDoesNotOverflowFarAbove)
 {
-  const PinnedBeam beam(beamWithContactAt(0.37));
+  const Beam beam(beamWithContactAt(0.37));
   const double omega = 1e7 * beam.mode(1).frequency;  // sinh would be of 1e4 here
   EXPECT_TRUE(std::isfinite(beam.receptance(omega)));
 }
 
-TEST(PinnedBeam, receptanceHasALimitWhereAModeHasItsNodeAtTheContact)
+TEST(Beam, receptanceHasALimitWhereAModeHasItsNodeAtTheContact)
 {
-  const PinnedBeam beam(beamWithContactAt(0.5));
+  const Beam beam(beamWithContactAt(0.5));
   const double omega = beam.mode(2).frequency;
   EXPECT_NEAR(beam.receptance(omega), receptanceBySummation(beam, omega * (1.0 + 1e-9), 20000),
               1e-6 * beam.staticReceptance(0));
