@@ -31,7 +31,7 @@ ModalTable::ModalTable(const ModalTableParameters& parameters)
     const double known = elasticReceptance(parameters);
     const double rest = *parameters.static_receptance - known;
     const double frequency = residual_frequency * modes_.back().frequency;
-    if (rest > table_rounding * known && frequency > 0.0)
+    if (rest > 0.0 && frequency > 0.0)
     {
       modes_.push_back(Mode{frequency, frequency * std::sqrt(rest), 0.0});
     }

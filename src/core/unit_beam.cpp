@@ -425,7 +425,9 @@ UnitMode UnitBeam::modeWithBody(int m) const
 {
   const auto total = [](const Count& count) { return count[0] + count[1]; };
   Precise low = 0;
-  Precise high = pi * static_cast<Precise>(m + 1);
+  // No simple share of pi: on a frequency of a held segment, to the last bit, the two parts of the count need not
+  // agree.
+  Precise high = 3.7L * static_cast<Precise>(m + 1);
   Count below = {0, 0};
   Count above = modesBelow(high);
   while (total(above) < m)
