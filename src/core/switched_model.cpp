@@ -399,8 +399,8 @@ LowestModes lowestModes(const std::vector<SignedStructure>& structures, std::siz
   const double limit = factor * lowest.back().frequency;
 
   LowestModes modes;
-  modes.movers = static_cast<std::size_t>(std::count_if(
-      lowest.begin(), lowest.end(), [](const Mode& mode) { return mode.contact_deflection != 0.0; }));
+  modes.movers = static_cast<std::size_t>(
+      std::count_if(lowest.begin(), lowest.end(), [](const Mode& mode) { return mode.contact_deflection != 0.0; }));
   for (const SignedStructure& side : structures)
   {
     int kept = 0;
@@ -437,7 +437,8 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
   const double stiffness = parameters.contact.stiffness;
   Coordinates& coordinates = space.coordinates;
   // Each root lies below the pole above it, so that `count` modes in contact lie below the free mode `count` + 2 that
-  // moves the gap. Modes above four times that frequency enter as a power series in omega^2 whose terms fall by 16 each.
+  // moves the gap. Modes above four times that frequency enter as a power series in omega^2 whose terms fall by 16
+  // each.
   std::size_t rigid = 0;
   for (const SignedStructure& side : structures)
   {
