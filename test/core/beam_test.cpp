@@ -141,19 +141,22 @@ TEST(Beam, staticDeflectionsWithoutTheKeptModesEqualTheSumsOfTheOthers)
   for (const double share : {0.5, 0.3, 0.05})
   {
     const Beam beam(beamWithContactAt(share));
-    for (const int kept : {1, 2, 5, 20, 100})
+    double receptance = 0.0;
+    double response = 0.0;
+    for (int m = 60000; m > 1; --m)
     {
-      double receptance = 0.0;
-      double response = 0.0;
-      for (int m = 60000; m > kept; --m)
+      const Mode mode = beam.mode(m);
+      const double compliance = mode.contact_deflection / (mode.frequency * mode.frequency);
+      receptance += compliance * mode.contact_deflection;
+      response += compliance * mode.participation;
+      for (const int kept : {1, 2, 5, 20, 100})
       {
-        const Mode mode = beam.mode(m);
-        const double compliance = mode.contact_deflection / (mode.frequency * mode.frequency);
-        receptance += compliance * mode.contact_deflection;
-        response += compliance * mode.participation;
+        if (m == kept + 1)
+        {
+          EXPECT_NEAR(beam.staticReceptance(kept) / receptance, 1.0, 1e-8) << share << ", without " << kept;
+          EXPECT_NEAR(beam.staticBaseResponse(kept) / response, 1.0, 1e-8) << share << ", without " << kept;
+        }
       }
-      EXPECT_NEAR(beam.staticReceptance(kept) / receptance, 1.0, 1e-8) << share << ", without " << kept;
-      EXPECT_NEAR(beam.staticBaseResponse(kept) / response, 1.0, 1e-8) << share << ", without " << kept;
     }
   }
 }
@@ -274,7 +277,7 @@ TEST(Beam, participationsSumToTheMassThatMoves)
   for (const BeamParameters& parameters : manyBeams())
   {
     const Beam beam(parameters);
-    const int modes = parameters.rigid_body ? 100 : 1000;
+    const int modes = parameters.rigid_body ? 60 : 1000;
     double sum = 0.0;
     for (int m = 1; m <= modes; ++m)
     {
@@ -384,7 +387,7 @@ TEST(Beam, staticDeflectionsAndReceptanceOfEveryKindAreTheirModalSums)
   {
     const Beam beam(parameters);
     const int rigid = beam.rigidBodyModeCount();
-    const int modes = parameters.rigid_body ? 150 : 1000;
+    const int modes = parameters.rigid_body ? 120 : 1000;
     std::vector<Mode> all;
     for (int m = 1; m <= modes; ++m)
     {
@@ -406,7 +409,7 @@ TEST(Beam, staticDeflectionsAndReceptanceOfEveryKindAreTheirModalSums)
         response += compliance * mode.participation;
       }
       // What is left falls as 1/M^3 and 1/M^4.
-      const double rest = parameters.rigid_body ? 5e-6 : 2e-8;
+      const double rest = parameters.rigid_body ? 1e-5 : 2e-8;
       EXPECT_NEAR(beam.staticReceptance(kept), receptance, rest * static_receptance)
           << name(parameters) << ", " << kept;
       EXPECT_NEAR(beam.staticBaseResponse(kept), response, 0.1 * rest * static_response)
@@ -426,7 +429,7 @@ TEST(Beam, staticDeflectionsAndReceptanceOfEveryKindAreTheirModalSums)
         sum += term;
         size += std::abs(term);
       }
-      EXPECT_NEAR(beam.receptance(omega), sum, (parameters.rigid_body ? 5e-6 : 5e-8) * (size + static_receptance))
+      EXPECT_NEAR(beam.receptance(omega), sum, (parameters.rigid_body ? 1e-5 : 5e-8) * (size + static_receptance))
           << name(parameters) << ", omega* " << relative;
     }
   }
