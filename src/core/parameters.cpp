@@ -191,7 +191,7 @@ private:
     good &= std::visit([this, &name](const auto& section) { return checkSection(name, section); }, beam.cross_section);
     if (!has_length)
     {
-      good &= checkNotNegative(name + ".contact_location", beam.contact_location, "m");
+      checkNotNegative(name + ".contact_location", beam.contact_location, "m");
       return false;
     }
     good &= beam.rigid_body ? checkBody(name, beam) : checkLocation(name, beam);
