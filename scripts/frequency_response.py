@@ -33,7 +33,7 @@ HARMONIC = Landmark("harmonic", "3.20, lower", 3.20, "3.185 to 3.205, period 2, 
 DOUBLING = Landmark("period one to period two", "2.40", 2.40, "within 2.39 to 2.41")
 
 
-def _read_csv(path, columns):
+def read_csv(path, columns):
     """Yields (line, {column: float}) for each row; extra columns are not looked at."""
     try:
         with open(path, newline="", encoding="utf-8") as file:
@@ -59,11 +59,29 @@ def _read_csv(path, columns):
         raise TableError(f"{path}: not a CSV file ({error})") from error
 
 
+def read_values(path, required):
+    """The finite numbers of a table of rows key,value; those of `required` must be among them."""
+    values = {}
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            for cells in csv.reader(file):
+                if len(cells) == 2 and cells[0] != "key":
+                    values[cells[0]] = float(cells[1])
+    except OSError as error:
+        raise TableError(f"{path}: {error.strerror}") from error
+    except (ValueError, csv.Error) as error:
+        raise TableError(f"{path}: {error}") from error
+    for key in required:
+        if not math.isfinite(values.get(key, math.nan)):
+            raise TableError(f"{path}: {key} is {values.get(key, 'missing')}, not a finite number")
+    return values
+
+
 def read_rows(folder):
     """The rows of frf.csv by ascending frequency."""
     path = os.path.join(folder, "frf.csv")
     columns = ("omega_star", "acceleration", "period", "impacts", "impulse_mean", "impulse_star_mean")
-    rows = [Row(*(values[column] for column in columns)) for values in _read_csv(path, columns)]
+    rows = [Row(*(values[column] for column in columns)) for values in read_csv(path, columns)]
     if not rows:
         raise TableError(f"{path}: the table is empty")
     return sorted(rows)
@@ -76,7 +94,7 @@ def read_impacts(folder, rows):
         raise TableError(f"{os.path.join(folder, 'frf.csv')}: no frequency has an impact")
     scale = greatest.impulse_star / greatest.impulse
     path = os.path.join(folder, "impacts.csv")
-    impacts = [Impact(v["omega_star"], scale * v["impulse"]) for v in _read_csv(path, ("omega_star", "impulse"))]
+    impacts = [Impact(v["omega_star"], scale * v["impulse"]) for v in read_csv(path, ("omega_star", "impulse"))]
     if not impacts:
         raise TableError(f"{path}: the table is empty")
     return impacts
@@ -87,18 +105,11 @@ def read_frequency_ratio(folder):
     path = os.path.join(folder, "model.csv")
     if not os.path.exists(path):
         return None
-    values = {}
     wanted = ("free_frequency_hz", "contact_frequency_hz")
-    try:
-        with open(path, newline="", encoding="utf-8") as file:
-            for cells in csv.reader(file):
-                if len(cells) == 2 and cells[0] in wanted:
-                    values[cells[0]] = float(cells[1])
-    except (OSError, ValueError, csv.Error) as error:
-        raise TableError(f"{path}: {error}") from error
+    values = read_values(path, wanted)
     for key in wanted:
-        if not (math.isfinite(values.get(key, math.nan)) and values[key] > 0.0):
-            raise TableError(f"{path}: {key} is {values.get(key, 'missing')}, not a positive number")
+        if values[key] <= 0.0:
+            raise TableError(f"{path}: {key} is {values[key]}, not a positive number")
     return values["contact_frequency_hz"] / values["free_frequency_hz"]
 
 
@@ -143,10 +154,10 @@ def measure_harmonic(rows):
 
 
 def measure_doubling(rows):
-    """Where, with omega* in 2.2 to 2.6, the first row of period two follows one of period one."""
+    """Where, with omega* in 2.2 to 2.6, the first row of period two follows one of period one; without impacts there is none."""
     last_single = None
     for row in rows:
-        if not 2.2 <= row.omega_star <= 2.6:
+        if not 2.2 <= row.omega_star <= 2.6 or row.impacts == 0:
             continue
         if row.period == 1:
             last_single = row.omega_star

@@ -1,10 +1,8 @@
 #include "vibro_impact/config/configuration.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -15,7 +13,9 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "text_file.h"
 #include "vibro_impact/config/error.h"
+#include "vibro_impact/config/modal_table_file.h"
 #include "vibro_impact/config/number.h"
 #include "vibro_impact/config/spelling.h"
 
@@ -37,9 +37,25 @@ constexpr Field<core::BeamParameters> beam_fields[] = {
     {"youngs_modulus", &core::BeamParameters::youngs_modulus},
     {"density", &core::BeamParameters::density},
     {"length", &core::BeamParameters::length},
-    {"height", &core::BeamParameters::height},
-    {"width", &core::BeamParameters::width},
     {"contact_location", &core::BeamParameters::contact_location},
+};
+constexpr Field<core::Rectangle> rectangle_fields[] = {
+    {"height", &core::Rectangle::height},
+    {"width", &core::Rectangle::width},
+};
+constexpr Field<core::Tube> tube_fields[] = {
+    {"outer_diameter", &core::Tube::outer_diameter},
+    {"wall_thickness", &core::Tube::wall_thickness},
+    {"added_mass_per_length", &core::Tube::added_mass_per_length},
+};
+constexpr Field<core::Section> section_fields[] = {
+    {"bending_stiffness", &core::Section::bending_stiffness},
+    {"mass_per_length", &core::Section::mass_per_length},
+};
+constexpr Field<core::RigidBody> body_fields[] = {
+    {"length", &core::RigidBody::length},
+    {"mass", &core::RigidBody::mass},
+    {"rotary_inertia", &core::RigidBody::rotary_inertia},
 };
 constexpr Field<core::ContactParameters> contact_fields[] = {
     {"stiffness", &core::ContactParameters::stiffness},
@@ -50,7 +66,31 @@ constexpr Field<core::DampingParameters> damping_fields[] = {
     {"contact", &core::DampingParameters::contact},
 };
 
-// A configuration takes a kilobyte; whatever is larger than this is some other file.
+// The columns of a modal table; all but the last are required.
+struct ListField
+{
+  const char* key;
+  std::vector<double> core::ModalTableParameters::*member;
+};
+constexpr ListField list_fields[] = {
+    {"frequency_hz", &core::ModalTableParameters::frequency_hz},
+    {"contact_deflection", &core::ModalTableParameters::contact_deflection},
+    {"participation", &core::ModalTableParameters::participation},
+    {"damping_ratio", &core::ModalTableParameters::damping_ratio},
+};
+
+struct EndName
+{
+  const char* name;
+  core::End end;
+};
+constexpr EndName end_names[] = {
+    {"pinned", core::End::pinned}, {"clamped", core::End::clamped}, {"free", core::End::free}};
+
+const Keys beam_keys = {"youngs_modulus", "density", "length",  "height", "width",     "contact_location",
+                        "rectangle",      "tube",    "section", "ends",   "rigid_body"};
+
+// A configuration takes a kilobyte, with a long modal table in it a hundred; whatever is larger is some other file.
 constexpr std::size_t largest_file = 1 << 20;
 
 std::string join(const Keys& keys)
@@ -92,17 +132,17 @@ std::string shown(const YAML::Node& node)
 class Reader
 {
 public:
-  explicit Reader(const YAML::Node& root)
+  Reader(const YAML::Node& root, std::string directory) : directory_(std::move(directory))
   {
     const std::optional<Section> top = section(root, "", {"beam1", "beam2", "contact", "damping", "basis"});
     if (!top)
     {
       return;
     }
-    readSection(*top, "beam1", beam_fields, parameters_.beam1);
-    readBeam2(*top);
-    readSection(*top, "contact", contact_fields, parameters_.contact);
-    readSection(*top, "damping", damping_fields, parameters_.damping);
+    readStructure(*top, "beam1", parameters_.beam1);
+    readStructure(*top, "beam2", parameters_.beam2);
+    readSection(*top, "", "contact", contact_fields, parameters_.contact);
+    readSection(*top, "", "damping", damping_fields, parameters_.damping);
     readBasis(*top);
     collectRangeFaults();
   }
@@ -153,45 +193,261 @@ private:
     return entries;
   }
 
+  // The numbers of the map `name` below `path`.
   template <typename Structure, std::size_t Count>
-  void readSection(const Section& top, const std::string& name, const Field<Structure> (&fields)[Count],
-                   Structure& values)
+  void readSection(const Section& above, const std::string& path, const std::string& name,
+                   const Field<Structure> (&fields)[Count], Structure& values)
   {
     Keys keys;
     for (const auto& field : fields)
     {
       keys.emplace_back(field.key);
     }
+    const std::string place = below(path, name);
+    const auto found = above.find(name);
+    if (found == above.end())
+    {
+      reject(place, "is missing", "a map of " + join(keys));
+      return;
+    }
+    if (const std::optional<Section> entries = section(found->second, place, keys))
+    {
+      readNumbers(*entries, place, fields, values);
+    }
+  }
+
+  // What is no number becomes one that is out of range, so that one place knows what is allowed.
+  template <typename Structure, std::size_t Count>
+  void readNumbers(const Section& entries, const std::string& place, const Field<Structure> (&fields)[Count],
+                   Structure& values)
+  {
+    for (const auto& field : fields)
+    {
+      values.*field.member =
+          parseNumber(scalar(entries, place, field.key)).value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  void readStructure(const Section& top, const std::string& name, core::StructureParameters& structure)
+  {
+    const std::string kinds = "a map of " + join(beam_keys) + ", or of modal_table, or the word rigid";
     const auto found = top.find(name);
     if (found == top.end())
     {
-      reject(name, "is missing", "a map of " + join(keys));
+      reject(name, "is missing", kinds);
       return;
     }
-    if (const std::optional<Section> entries = section(found->second, name, keys))
+    const YAML::Node& node = found->second;
+    if (node.IsScalar() && node.Scalar() == "rigid")
     {
-      for (const auto& field : fields)
+      structure = core::RigidSurface{};
+    }
+    else if (!node.IsMap())
+    {
+      reject(name, shown(node), kinds);
+    }
+    else if (node["modal_table"].IsDefined())
+    {
+      if (const std::optional<Section> entries = section(node, name, {"modal_table"}))
       {
-        // What is no number becomes one that is out of range, so that one place knows what is allowed.
-        values.*field.member =
-            parseNumber(scalar(*entries, name, field.key)).value_or(std::numeric_limits<double>::quiet_NaN());
+        readModalTable(entries->at("modal_table"), name + ".modal_table",
+                       structure.emplace<core::ModalTableParameters>());
+      }
+    }
+    else if (const std::optional<Section> entries = section(node, name, beam_keys))
+    {
+      readBeam(*entries, name, structure.emplace<core::BeamParameters>());
+    }
+  }
+
+  void readBeam(const Section& entries, const std::string& name, core::BeamParameters& beam)
+  {
+    std::vector<std::string> kinds;
+    if (entries.count("height") + entries.count("width") > 0)
+    {
+      kinds.emplace_back("height and width");
+    }
+    for (const char* kind : {"rectangle", "tube", "section"})
+    {
+      if (entries.count(kind) > 0)
+      {
+        kinds.emplace_back(kind);
+      }
+    }
+    if (kinds.size() > 1)
+    {
+      reject(name, "has " + join(kinds), "with one cross-section: height and width, rectangle, tube or section");
+      return;
+    }
+    const std::string kind = kinds.empty() ? "height and width" : kinds.front();
+
+    readNumbers(entries, name, beam_fields, beam);
+    if (kind == "section")
+    {
+      readSection(entries, name, kind, section_fields, beam.cross_section.emplace<core::Section>());
+      for (const auto& [key, member] : {beam_fields[0], beam_fields[1]})
+      {
+        beam.*member = 0.0;
+        if (entries.count(key) > 0)
+        {
+          reject(below(name, key), shown(entries.at(key)), "left out where the section says it all");
+        }
+      }
+    }
+    else if (kind == "tube")
+    {
+      readTube(entries, name, beam.cross_section.emplace<core::Tube>());
+    }
+    else if (kind == "rectangle")
+    {
+      renamed_[name + ".height"] = name + ".rectangle.height";
+      renamed_[name + ".width"] = name + ".rectangle.width";
+      readSection(entries, name, kind, rectangle_fields, beam.cross_section.emplace<core::Rectangle>());
+    }
+    else
+    {
+      readNumbers(entries, name, rectangle_fields, beam.cross_section.emplace<core::Rectangle>());
+    }
+    readEnds(entries, name, beam);
+    if (entries.count("rigid_body") > 0)
+    {
+      readSection(entries, name, "rigid_body", body_fields, beam.rigid_body.emplace());
+    }
+  }
+
+  // The added mass may be left out.
+  void readTube(const Section& above, const std::string& name, core::Tube& tube)
+  {
+    if (auto entries =
+            section(above.at("tube"), name + ".tube", {"outer_diameter", "wall_thickness", "added_mass_per_length"}))
+    {
+      entries->emplace("added_mass_per_length", YAML::Node("0"));
+      readNumbers(*entries, name + ".tube", tube_fields, tube);
+    }
+  }
+
+  void readEnds(const Section& entries, const std::string& name, core::BeamParameters& beam)
+  {
+    const auto found = entries.find("ends");
+    if (found == entries.end())
+    {
+      return;
+    }
+    const YAML::Node& node = found->second;
+    bool good = node.IsSequence() && node.size() == beam.ends.size();
+    std::string words;
+    for (std::size_t i = 0; node.IsSequence() && i < node.size(); ++i)
+    {
+      const std::string word = node[i].IsScalar() ? node[i].Scalar() : "";
+      words += (words.empty() ? "" : ", ") + word;
+      const auto* known = std::find_if(std::begin(end_names), std::end(end_names),
+                                       [&word](const EndName& name_of_end) { return name_of_end.name == word; });
+      good &= known != std::end(end_names);
+      if (good)
+      {
+        beam.ends[i] = known->end;
+      }
+    }
+    if (!good)
+    {
+      reject(name + ".ends", node.IsSequence() ? "= " + quoted("[" + words + "]") : shown(node),
+             "a list of two of pinned, clamped, free");
+    }
+  }
+
+  void readModalTable(const YAML::Node& node, const std::string& place, core::ModalTableParameters& table)
+  {
+    Keys keys = {"file"};
+    for (const ListField& field : list_fields)
+    {
+      keys.emplace_back(field.key);
+    }
+    keys.emplace_back("static_receptance");
+    const std::optional<Section> entries = section(node, place, keys);
+    if (!entries)
+    {
+      return;
+    }
+    if (entries->count("file") > 0)
+    {
+      for (const ListField& field : list_fields)
+      {
+        if (entries->count(field.key) > 0)
+        {
+          reject(below(place, field.key), shown(entries->at(field.key)), "left out where a file is given");
+        }
+      }
+      readTableFile(entries->at("file"), place, table);
+    }
+    else
+    {
+      for (const ListField& field : list_fields)
+      {
+        readList(*entries, place, field, table.*field.member);
+      }
+    }
+    if (entries->count("static_receptance") > 0)
+    {
+      table.static_receptance =
+          parseNumber(scalar(*entries, place, "static_receptance")).value_or(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+
+  void readTableFile(const YAML::Node& node, const std::string& place, core::ModalTableParameters& table)
+  {
+    const std::string key = place + ".file";
+    const std::filesystem::path file = node.IsScalar() ? node.Scalar() : "";
+    if (file.empty())
+    {
+      reject(key, shown(node), "the path of a CSV file");
+      rejected_.insert(place);
+    }
+    else if (file.is_relative() && directory_.empty())
+    {
+      reject(key, shown(node), "an absolute path: nothing says which folder it is relative to");
+      rejected_.insert(place);
+    }
+    else
+    {
+      const std::string path = file.is_relative() ? (directory_ / file).string() : file.string();
+      try
+      {
+        table = config::readModalTable(path);
+        table_files_[place] = path;
+      }
+      catch (const Error& error)
+      {
+        faults_.push_back(key + ": " + error.what());
+        rejected_.insert(place);
       }
     }
   }
 
-  void readBeam2(const Section& top)
+  void readList(const Section& entries, const std::string& place, const ListField& field, std::vector<double>& list)
   {
-    const auto found = top.find("beam2");
-    if (found != top.end() && found->second.IsScalar())
+    const std::string key = below(place, field.key);
+    const auto found = entries.find(field.key);
+    if (found == entries.end())
     {
-      parameters_.beam2 = core::RigidSurface{};
-      if (found->second.Scalar() != "rigid")
+      if (field.member != &core::ModalTableParameters::damping_ratio)
       {
-        reject("beam2", shown(found->second), "a map as beam1, or the word rigid");
+        reject(key, "is missing", "a list of numbers, or file in place of all lists");
+        rejected_.insert(place);
       }
       return;
     }
-    readSection(top, "beam2", beam_fields, parameters_.beam2.emplace<core::BeamParameters>());
+    if (!found->second.IsSequence())
+    {
+      reject(key, shown(found->second), "a list of numbers");
+      rejected_.insert(place);
+      return;
+    }
+    for (const auto& entry : found->second)
+    {
+      const std::optional<double> value = entry.IsScalar() ? parseNumber(entry.Scalar()) : std::nullopt;
+      list.push_back(value.value_or(std::numeric_limits<double>::quiet_NaN()));
+      shown_[key + "[" + std::to_string(list.size()) + "]"] = shown(entry);
+    }
   }
 
   void readBasis(const Section& top)
@@ -250,12 +506,33 @@ private:
   {
     for (const core::ParameterFault& fault : core::findFaults(parameters_))
     {
-      if (rejected_.count(fault.key.substr(0, fault.key.find('.'))) == 0)
+      const auto renamed = renamed_.find(fault.key);
+      std::string key = renamed == renamed_.end() ? fault.key : renamed->second;
+      if (isRejected(key))
       {
-        const auto found = shown_.find(fault.key);
-        reject(fault.key, found == shown_.end() ? "= " + fault.value : found->second, fault.allowed);
+        continue;
+      }
+      const auto found = shown_.find(key);
+      const std::string state = found == shown_.end() ? "= " + fault.value : found->second;
+      for (const auto& [place, file] : table_files_)
+      {
+        key += key.compare(0, place.size(), place) == 0 ? " of " + file : "";
+      }
+      reject(key, state, fault.allowed);
+    }
+  }
+
+  // Whether the key has a fault already, or what it lies below.
+  bool isRejected(const std::string& key) const
+  {
+    for (std::size_t end = key.find_first_of(".:["); end != std::string::npos; end = key.find_first_of(".:[", end + 1))
+    {
+      if (rejected_.count(key.substr(0, end)) > 0)
+      {
+        return true;
       }
     }
+    return rejected_.count(key) > 0;
   }
 
   void reject(const std::string& key, const std::string& state, const std::string& allowed)
@@ -269,10 +546,13 @@ private:
     return path.empty() ? key : path + "." + key;
   }
 
+  std::filesystem::path directory_;  // of files with a relative path; may be empty
   core::SystemParameters parameters_;
   std::vector<std::string> faults_;
-  std::set<std::string> rejected_;            // keys with a fault; what lies below them is not looked at
-  std::map<std::string, std::string> shown_;  // how each value stands in the text
+  std::set<std::string> rejected_;                  // keys with a fault; what lies below them is not looked at
+  std::map<std::string, std::string> shown_;        // how each value stands in the text
+  std::map<std::string, std::string> renamed_;      // keys that the text gives another name than core::findFaults()
+  std::map<std::string, std::string> table_files_;  // where the modal table of a key comes from
 };
 
 std::vector<YAML::Node> documents(const std::string& yaml, const std::string& name)
@@ -289,13 +569,88 @@ std::vector<YAML::Node> documents(const std::string& yaml, const std::string& na
 }
 
 template <typename Structure, std::size_t Count>
-void writeSection(std::ostream& stream, const char* name, const Field<Structure> (&fields)[Count],
+void writeNumbers(std::ostream& stream, const std::string& indent, const Field<Structure> (&fields)[Count],
                   const Structure& values)
 {
-  stream << name << ":\n";
   for (const auto& field : fields)
   {
-    stream << "  " << field.key << ": " << formatNumber(values.*field.member) << '\n';
+    stream << indent << field.key << ": " << formatNumber(values.*field.member) << '\n';
+  }
+}
+
+template <typename Structure, std::size_t Count>
+void writeSection(std::ostream& stream, const std::string& indent, const char* name,
+                  const Field<Structure> (&fields)[Count], const Structure& values)
+{
+  stream << indent << name << ":\n";
+  writeNumbers(stream, indent + "  ", fields, values);
+}
+
+void writeCrossSection(std::ostream& stream, const core::Rectangle& section)
+{
+  writeNumbers(stream, "  ", rectangle_fields, section);
+}
+
+void writeCrossSection(std::ostream& stream, const core::Tube& section)
+{
+  writeSection(stream, "  ", "tube", tube_fields, section);
+}
+
+void writeCrossSection(std::ostream& stream, const core::Section& section)
+{
+  writeSection(stream, "  ", "section", section_fields, section);
+}
+
+const char* nameOf(core::End end)
+{
+  return std::find_if(std::begin(end_names), std::end(end_names),
+                      [end](const EndName& name_of_end) { return name_of_end.end == end; })
+      ->name;
+}
+
+void writeStructure(std::ostream& stream, const char* name, const core::BeamParameters& beam)
+{
+  stream << name << ":\n";
+  const bool material = !std::holds_alternative<core::Section>(beam.cross_section);
+  for (const auto& field : beam_fields)
+  {
+    if (material ||
+        (field.member != &core::BeamParameters::youngs_modulus && field.member != &core::BeamParameters::density))
+    {
+      stream << "  " << field.key << ": " << formatNumber(beam.*field.member) << '\n';
+    }
+  }
+  std::visit([&stream](const auto& section) { writeCrossSection(stream, section); }, beam.cross_section);
+  if (beam.ends[0] != core::End::pinned || beam.ends[1] != core::End::pinned)
+  {
+    stream << "  ends: [" << nameOf(beam.ends[0]) << ", " << nameOf(beam.ends[1]) << "]\n";
+  }
+  if (beam.rigid_body)
+  {
+    writeSection(stream, "  ", "rigid_body", body_fields, *beam.rigid_body);
+  }
+}
+
+void writeStructure(std::ostream& stream, const char* name, const core::RigidSurface& /*surface*/)
+{
+  stream << name << ": rigid\n";
+}
+
+void writeStructure(std::ostream& stream, const char* name, const core::ModalTableParameters& table)
+{
+  stream << name << ":\n  modal_table:\n";
+  for (const ListField& field : list_fields)
+  {
+    const std::vector<double>& list = table.*field.member;
+    for (std::size_t m = 0; m < list.size(); ++m)
+    {
+      stream << (m == 0 ? "    " + std::string(field.key) + ": [" : ", ") << formatNumber(list[m]);
+    }
+    stream << (list.empty() ? "" : "]\n");
+  }
+  if (table.static_receptance)
+  {
+    stream << "    static_receptance: " << formatNumber(*table.static_receptance) << '\n';
   }
 }
 
@@ -312,7 +667,7 @@ void writeBasis(std::ostream& stream, const core::AttachmentBasis& basis)
 
 }  // namespace
 
-core::SystemParameters parse(const std::string& yaml, const std::string& name)
+core::SystemParameters parse(const std::string& yaml, const std::string& name, const std::string& directory)
 {
   const std::vector<YAML::Node> nodes = documents(yaml, name);
   if (nodes.empty() || (nodes.size() == 1 && nodes[0].IsNull()))
@@ -323,7 +678,7 @@ core::SystemParameters parse(const std::string& yaml, const std::string& name)
   {
     throw Error(name + ": holds " + std::to_string(nodes.size()) + " YAML documents: must be one");
   }
-  const Reader reader(nodes[0]);
+  const Reader reader(nodes[0], directory);
   const std::vector<std::string>& faults = reader.faults();
   if (!faults.empty())
   {
@@ -334,47 +689,19 @@ core::SystemParameters parse(const std::string& yaml, const std::string& name)
 
 core::SystemParameters loadFile(const std::string& path)
 {
-  const auto fail = [&path](const std::string& reason) { throw Error(path + ": cannot be read: " + reason); };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-  {
-    fail("it is a directory");
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-  {
-    fail(std::strerror(errno));
-  }
-  std::string text(largest_file + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad())
-  {
-    fail(std::strerror(errno));
-  }
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > largest_file)
-  {
-    fail("it is larger than " + std::to_string(largest_file) + " bytes, which no configuration is");
-  }
-  return parse(text, path);
+  const std::string text = readTextFile(path, largest_file, "no configuration is");
+  const std::filesystem::path directory = std::filesystem::path(path).parent_path();
+  return parse(text, path, directory.empty() ? "." : directory.string());
 }
 
 std::string toYaml(const core::SystemParameters& parameters)
 {
   std::ostringstream stream;
   stream.imbue(std::locale::classic());
-  writeSection(stream, "beam1", beam_fields, parameters.beam1);
-  if (const auto* beam2 = std::get_if<core::BeamParameters>(&parameters.beam2))
-  {
-    writeSection(stream, "beam2", beam_fields, *beam2);
-  }
-  else
-  {
-    stream << "beam2: rigid\n";
-  }
-  writeSection(stream, "contact", contact_fields, parameters.contact);
-  writeSection(stream, "damping", damping_fields, parameters.damping);
+  std::visit([&stream](const auto& structure) { writeStructure(stream, "beam1", structure); }, parameters.beam1);
+  std::visit([&stream](const auto& structure) { writeStructure(stream, "beam2", structure); }, parameters.beam2);
+  writeSection(stream, "", "contact", contact_fields, parameters.contact);
+  writeSection(stream, "", "damping", damping_fields, parameters.damping);
   std::visit([&stream](const auto& basis) { writeBasis(stream, basis); }, parameters.basis);
   return stream.str();
 }

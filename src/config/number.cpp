@@ -1,6 +1,11 @@
 #include "vibro_impact/config/number.h"
 
+#include <locale.h>
+
+#include <array>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <locale>
 #include <sstream>
@@ -8,23 +13,48 @@
 
 namespace vibro_impact::config
 {
+namespace
+{
+// The "C" locale in this thread, as long as it lives.
+class ClassicLocale
+{
+public:
+  ClassicLocale() : before_(uselocale(classic()))
+  {
+  }
+  ~ClassicLocale()
+  {
+    uselocale(before_);
+  }
+  ClassicLocale(const ClassicLocale&) = delete;
+  ClassicLocale& operator=(const ClassicLocale&) = delete;
+
+private:
+  static locale_t classic()
+  {
+    static const locale_t locale = newlocale(LC_ALL_MASK, "C", nullptr);
+    return locale;
+  }
+
+  locale_t before_;
+};
+}  // namespace
+
 std::string formatNumber(double value)
 {
-  std::string text;
+  // A history has millions of numbers, and a stream takes ten times as long for each.
+  const ClassicLocale guard;
+  std::array<char, 32> text{};
   for (int digits = std::numeric_limits<double>::digits10; digits <= std::numeric_limits<double>::max_digits10;
        ++digits)
   {
-    std::ostringstream stream;
-    stream.imbue(std::locale::classic());
-    stream.precision(digits);
-    stream << value;
-    text = stream.str();
-    if (parseNumber(text) == value)
+    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+    if (std::strtod(text.data(), nullptr) == value)
     {
       break;
     }
   }
-  return text;
+  return text.data();
 }
 
 std::optional<double> parseNumber(const std::string& text)

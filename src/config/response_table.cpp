@@ -1,28 +1,11 @@
 #include "vibro_impact/config/response_table.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <type_traits>
-#include <variant>
-
-#include "vibro_impact/config/error.h"
-#include "vibro_impact/config/number.h"
+#include "table.h"
 
 namespace vibro_impact::config
 {
 namespace
 {
-template <typename Row>
-struct Column
-{
-  const char* name;
-  std::variant<double Row::*, int Row::*, bool Row::*, std::uint64_t Row::*> member;
-};
-
 using core::ResponseRow;
 
 const std::vector<Column<ResponseRow>> response_columns = {
@@ -42,6 +25,9 @@ const std::vector<Column<ResponseRow>> response_columns = {
     {"impulse_per_cycle", &ResponseRow::impulse_per_cycle},
     {"peak_force", &ResponseRow::peak_force},
     {"duration_mean", &ResponseRow::duration_mean},
+    {"contact_share", &ResponseRow::contact_share},
+    {"stiffness", &ResponseRow::stiffness},
+    {"clearance", &ResponseRow::clearance},
 };
 
 const std::vector<Column<ImpactRow>> impact_columns = {
@@ -53,142 +39,11 @@ const std::vector<Column<ImpactRow>> impact_columns = {
     {"peak_force", &ImpactRow::peak_force},
     {"approach_speed", &ImpactRow::approach_speed},
     {"separation_speed", &ImpactRow::separation_speed},
+    {"energy_lost", &ImpactRow::energy_lost},
+    {"dissipated", &ImpactRow::dissipated},
+    {"mapping_loss", &ImpactRow::mapping_loss},
+    {"base_work", &ImpactRow::base_work},
 };
-
-std::string cell(double value)
-{
-  return formatNumber(value);
-}
-
-template <typename Integer, typename = std::enable_if_t<std::is_integral_v<Integer>>>
-std::string cell(Integer value)
-{
-  return std::to_string(value);
-}
-
-bool parseCell(const std::string& text, double& value)
-{
-  const std::optional<double> number = parseNumber(text);
-  value = number.value_or(0.0);
-  return number.has_value();
-}
-
-template <typename Integer, typename = std::enable_if_t<std::is_integral_v<Integer>>>
-bool parseCell(const std::string& text, Integer& value)
-{
-  const std::optional<std::int64_t> number = parseInteger(text);
-  // Not even a running number of impacts comes near the end of a signed one.
-  constexpr auto greatest = std::min<std::uint64_t>(std::numeric_limits<Integer>::max(), INT64_MAX);
-  if (!number || *number < 0 || *number > static_cast<std::int64_t>(greatest))
-  {
-    return false;
-  }
-  value = static_cast<Integer>(*number);
-  return true;
-}
-
-template <typename Row>
-std::string writeTable(const std::vector<Column<Row>>& columns, const std::vector<Row>& rows)
-{
-  std::string text;
-  for (const auto& column : columns)
-  {
-    text += (text.empty() ? "" : ",") + std::string(column.name);
-  }
-  for (const Row& row : rows)
-  {
-    char separator = '\n';
-    for (const auto& column : columns)
-    {
-      text += separator + std::visit([&row](auto member) { return cell(row.*member); }, column.member);
-      separator = ',';
-    }
-  }
-  return text + '\n';
-}
-
-std::vector<std::string> split(std::string line)
-{
-  if (!line.empty() && line.back() == '\r')
-  {
-    line.pop_back();
-  }
-  std::vector<std::string> cells;
-  std::size_t begin = 0;
-  for (std::size_t end = line.find(','); end != std::string::npos; end = line.find(',', begin))
-  {
-    cells.push_back(line.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  cells.push_back(line.substr(begin));
-  return cells;
-}
-
-template <typename Row>
-std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row>>& columns)
-{
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-  {
-    throw Error(path + ": cannot be read: it is a directory");
-  }
-  errno = 0;
-  std::ifstream file(path);
-  if (!file)
-  {
-    throw Error(path + ": cannot be read: " + std::strerror(errno));
-  }
-  std::string line;
-  if (!std::getline(file, line))
-  {
-    throw Error(path + ": is empty: must be a table that starts with the names of its columns");
-  }
-  const std::vector<std::string> names = split(line);
-  std::vector<std::size_t> positions;
-  std::string missing;
-  for (const auto& column : columns)
-  {
-    const auto found = std::find(names.begin(), names.end(), column.name);
-    if (found == names.end())
-    {
-      missing += (missing.empty() ? "" : ", ") + std::string(column.name);
-    }
-    positions.push_back(static_cast<std::size_t>(found - names.begin()));
-  }
-  if (!missing.empty())
-  {
-    throw Error(path + ": line 1: columns are missing: " + missing);
-  }
-
-  std::vector<Row> rows;
-  for (std::size_t number = 2; std::getline(file, line); ++number)
-  {
-    const std::string place = path + ": line " + std::to_string(number);
-    const std::vector<std::string> cells = split(line);
-    if (cells.size() != names.size())
-    {
-      throw Error(place + ": has " + std::to_string(cells.size()) + " columns: must have " +
-                  std::to_string(names.size()));
-    }
-    Row row;
-    for (std::size_t i = 0; i < columns.size(); ++i)
-    {
-      const std::string& text = cells[positions[i]];
-      std::visit(
-          [&](auto member)
-          {
-            if (!parseCell(text, row.*member))
-            {
-              throw Error(place + ": column " + columns[i].name + " = \"" + text + "\": must be a " +
-                          (std::holds_alternative<double Row::*>(columns[i].member) ? "finite" : "whole") + " number");
-            }
-          },
-          columns[i].member);
-    }
-    rows.push_back(row);
-  }
-  return rows;
-}
 
 }  // namespace
 
@@ -212,7 +67,8 @@ OutputFile impactTable(const std::vector<core::Response>& responses)
     {
       const core::Impact& impact = captured.impact;
       rows.push_back({response.row.omega_star, impact.number, captured.onset, impact.duration, impact.impulse,
-                      impact.peak_force, impact.approach_speed, impact.separation_speed});
+                      impact.peak_force, impact.approach_speed, impact.separation_speed, impact.energy_lost,
+                      impact.dissipated, impact.mapping_loss, impact.base_work});
     }
   }
   return {"impacts.csv", writeTable(impact_columns, rows)};

@@ -1,5 +1,6 @@
 #include "vibro_impact/core/harmonic_simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,9 @@ namespace vibro_impact::core
 namespace
 {
 constexpr double two_pi = 6.28318530717958647693;
+
+/// A share of the time that lacks no more than this is the whole of it: the sum over the cycles is rounded.
+constexpr double whole_share = 1.0e-9;
 
 /// Puts impacts on the time axis of a step whose cycles are numbered from zero.
 class ImpactCollector : public ImpactSink
@@ -112,6 +116,11 @@ double HarmonicSimulation::time() const
   return static_cast<double>(implementation_->motion.intervals()) * implementation_->cycle;
 }
 
+double HarmonicSimulation::contactTime() const
+{
+  return implementation_->motion.contactTime();
+}
+
 const SwitchedModel& HarmonicSimulation::model() const
 {
   return implementation_->motion.model();
@@ -122,8 +131,15 @@ Response harmonicResponse(HarmonicSimulation& simulation, double frequency, doub
 {
   simulation.setDrive(frequency, acceleration);
   ImpactCollector collector(two_pi / frequency);
-  simulation.advance(cycles, collector);
-  const DriveStep step{frequency, acceleration, 0.0, simulation.time()};
+  const std::uint64_t first_half = cycles / 2;
+  simulation.advance(first_half, collector);
+  const double start = simulation.time();
+  const double contact_time = simulation.contactTime();
+  simulation.advance(cycles - first_half, collector);
+  DriveStep step{frequency, acceleration, 0.0, simulation.time(), {}, 0.0};
+  step.contact = {simulation.model().stiffness(), simulation.model().clearance()};
+  const double share = (simulation.contactTime() - contact_time) / (step.end - start);
+  step.contact_share = share > 1.0 - whole_share ? 1.0 : share;
   return evaluateResponse(step, collector.impacts(), simulation.model().scales(), options);
 }
 

@@ -82,7 +82,7 @@ double quadraticForm(const double* __restrict z, const double* __restrict square
 }
 
 VIBRO_IMPACT_CLONES
-Forms kickGrowEvaluate(double* __restrict z, double change, const double* __restrict kick,
+Forms kickGrowEvaluate(double* __restrict z, double* __restrict kicked, double change, const double* __restrict kick,
                        const double* __restrict factor_re, const double* __restrict factor_im,
                        const double* __restrict first, const double* __restrict second, Eigen::Index half)
 {
@@ -92,8 +92,12 @@ Forms kickGrowEvaluate(double* __restrict z, double change, const double* __rest
   Packet second_im{};
   for (Eigen::Index n = 0; n < half / lanes; ++n)
   {
-    const Packet x = packets(z)[n] + change * packets(kick)[n];
-    const Packet y = packets(z + half)[n] + change * packets(kick + half)[n];
+    const Packet old_re = packets(z)[n];
+    const Packet old_im = packets(z + half)[n];
+    packets(kicked)[n] += change * old_re;
+    packets(kicked + half)[n] += change * old_im;
+    const Packet x = old_re + change * packets(kick)[n];
+    const Packet y = old_im + change * packets(kick + half)[n];
     const Packet f = packets(factor_re)[n];
     const Packet g = packets(factor_im)[n];
     const Packet re = x + (x * f - y * g);

@@ -33,9 +33,9 @@ struct Forms
   double first, second;
 };
 
-/// z = (z + change kick)(1 + f), and of the new z the two linear forms `first` and `second`, all in one pass; every
-/// array but the factors is [real parts; imaginary parts] with `half` of each.
-Forms kickGrowEvaluate(double* z, double change, const double* kick, const double* factor_re, const double* factor_im,
-                       const double* first, const double* second, Eigen::Index half);
+/// kicked += change z, then z = (z + change kick)(1 + f), and of the new z the two linear forms `first` and `second`,
+/// all in one pass; every array but the factors is [real parts; imaginary parts] with `half` of each.
+Forms kickGrowEvaluate(double* z, double* kicked, double change, const double* kick, const double* factor_re,
+                       const double* factor_im, const double* first, const double* second, Eigen::Index half);
 
 }  // namespace vibro_impact::core

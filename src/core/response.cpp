@@ -92,11 +92,15 @@ Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>&
   row.omega_star = step.frequency / scales.frequency;
   row.frequency_hz = step.frequency / two_pi;
   row.acceleration = step.acceleration;
+  row.contact_share = step.contact_share;
+  row.stiffness = step.contact.stiffness;
+  row.clearance = step.contact.clearance;
 
   std::vector<TimedImpact> whole;
   std::copy_if(impacts.begin(), impacts.end(), std::back_inserter(whole),
                [](const TimedImpact& timed) { return !timed.impact.cut_short; });
-  if (whole.empty())
+  const double middle = 0.5 * (step.start + step.end);
+  if (whole.empty() || whole.back().onset + whole.back().impact.duration < middle)
   {
     row.period = 1;
     row.steady = true;

@@ -8,6 +8,18 @@
 
 namespace vibro_impact::core
 {
+namespace
+{
+bool sameStructures(const SwitchedModel& a, const SwitchedModel& b)
+{
+  const auto same = [](const Eigen::ArrayXd& x, const Eigen::ArrayXd& y)
+  { return x.size() == y.size() && (x == y).all(); };
+  return same(a.free().frequency, b.free().frequency) &&
+         same(a.free().contact_deflection, b.free().contact_deflection) &&
+         same(a.free().participation, b.free().participation);
+}
+}  // namespace
+
 struct SampledSimulation::Implementation
 {
   Implementation(std::shared_ptr<const SwitchedModel> model, double period)
@@ -50,6 +62,22 @@ void SampledSimulation::start(const InitialMotion& motion, ImpactSink& sink)
   model().freeCoordinates(motion, displacement, velocity);
   reset(sink);
   implementation_->motion.start(displacement, velocity);
+}
+
+void SampledSimulation::setModel(std::shared_ptr<const SwitchedModel> model, ImpactSink& sink)
+{
+  Implementation& self = *implementation_;
+  if (!sameStructures(self.motion.model(), *model))
+  {
+    throw std::invalid_argument("model: its free modes are others; allowed: one that differs in its contact alone");
+  }
+  SwitchedMotion next(std::move(model), false);
+  next.setInterval(self.sample_period);
+  if (self.samples > 0)
+  {
+    next.takeOver(self.motion, sink);
+  }
+  self.motion = std::move(next);
 }
 
 void SampledSimulation::advance(const double* acceleration, std::size_t count, double* gap, double* force,

@@ -1,5 +1,6 @@
 #include "span_energy.h"
 
+#include <cmath>
 #include <complex>
 
 #include "lanes.h"
@@ -116,13 +117,6 @@ void SpanEnergy::open(const Eigen::VectorXd& z, const Moment& now)
   start_ = antiderivatives(z, now);
   kicks_.setZero();
   squared_changes_ = squared_slope_ = 0.0;
-}
-
-void SpanEnergy::pass(const Eigen::VectorXd& z, double change, double slope, double length)
-{
-  addScaled(kicks_.data(), change, z.data(), z.size());
-  squared_changes_ += change * change;
-  squared_slope_ += slope * slope * length;
 }
 
 SpanEnergy::Amounts SpanEnergy::upTo(const Eigen::VectorXd& z, const Moment& now) const

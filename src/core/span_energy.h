@@ -53,8 +53,17 @@ public:
 
   /// Begins a span.
   void open(const Eigen::VectorXd& z, const Moment& now);
-  /// At a sample: the slope, until now `slope` for `length`, changes by `change`; z is still that before the kick.
-  void pass(const Eigen::VectorXd& z, double change, double slope, double length);
+  /// At a sample: the slope, until now `slope` for `length`, changes by `change`. Whoever kicks z adds  change z  as it
+  /// is before to kicks().
+  void pass(double change, double slope, double length)
+  {
+    squared_changes_ += change * change;
+    squared_slope_ += slope * slope * length;
+  }
+  double* kicks()
+  {
+    return kicks_.data();
+  }
   /// From the start of the span to now.
   Amounts upTo(const Eigen::VectorXd& z, const Moment& now) const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,7 +14,6 @@
 #include <Eigen/QR>
 
 #include "vibro_impact/core/characteristic_equation.h"
-#include "vibro_impact/core/pinned_beam.h"
 
 namespace vibro_impact::core
 {
@@ -45,11 +45,11 @@ constexpr double common_motion = 1.0e-9;
 std::vector<SignedStructure> makeStructures(const SystemParameters& parameters)
 {
   std::vector<SignedStructure> structures;
-  structures.push_back({std::make_unique<PinnedBeam>(parameters.beam1), +1.0});
-  if (const auto* beam2 = std::get_if<BeamParameters>(&parameters.beam2))
-  {
-    structures.push_back({std::make_unique<PinnedBeam>(*beam2), -1.0});
-  }
+  structures.push_back({makeStructure(parameters.beam1), +1.0});
+  structures.push_back({makeStructure(parameters.beam2), -1.0});
+  structures.erase(std::remove_if(structures.begin(), structures.end(),
+                                  [](const SignedStructure& side) { return side.structure == nullptr; }),
+                   structures.end());
   return structures;
 }
 
@@ -115,8 +115,9 @@ Eigen::MatrixXd commonDirections(const Eigen::VectorXd& deflections, const Eigen
 
 /// Coordinates are sorted by frequency, and those of equal frequency rotated so that one of them carries the whole
 /// motion of the gap and the others leave it unchanged; any such rotation is as orthogonal as the modes were. What does
-/// not move the gap then says so exactly: two structures that move alike have no rounding noise between them. Returns
-/// the orthogonal R with  given coordinates = R new coordinates.
+/// not move the gap then says so exactly: two structures that move alike have no rounding noise between them. The
+/// damping of each is the projection of what the modes had; all of the coordinates need a damping ratio. Returns the
+/// orthogonal R with  given coordinates = R new coordinates.
 Eigen::MatrixXd separateEqualFrequencies(Coordinates& coordinates)
 {
   std::vector<std::size_t> order(coordinates.size());
@@ -143,11 +144,13 @@ Eigen::MatrixXd separateEqualFrequencies(Coordinates& coordinates)
     const auto equal = static_cast<Eigen::Index>(last - first);
     Eigen::VectorXd deflections(equal);
     Eigen::VectorXd participations(equal);
+    Eigen::VectorXd damping(equal);
     for (Eigen::Index i = 0; i < equal; ++i)
     {
       const Mode& mode = coordinates[first + static_cast<std::size_t>(i)];
       deflections(i) = mode.contact_deflection;
       participations(i) = mode.participation;
+      damping(i) = *mode.damping_ratio;
     }
     const Eigen::MatrixXd directions =
         equal > 1 ? commonDirections(deflections, participations) : Eigen::MatrixXd::Identity(1, 1);
@@ -166,9 +169,10 @@ Eigen::MatrixXd separateEqualFrequencies(Coordinates& coordinates)
     const bool moves_gap = std::abs(product) > common_motion * deflection * participation;
     const double relative = moves_gap ? product / deflection : 0.0;
     const double common = std::sqrt(std::max(0.0, participation * participation - relative * relative));
+    const Eigen::VectorXd projected = directions.cwiseAbs2().transpose() * damping;
     for (std::size_t i = first; i < last; ++i)
     {
-      coordinates[i] = Mode{frequency, 0.0, 0.0};
+      coordinates[i] = Mode{frequency, 0.0, 0.0, projected(static_cast<Eigen::Index>(i - first))};
     }
     coordinates[first].contact_deflection = deflection;
     coordinates[first].participation = deflection > 0.0 ? relative : common;
@@ -177,13 +181,26 @@ Eigen::MatrixXd separateEqualFrequencies(Coordinates& coordinates)
   return rotation;
 }
 
+/// Coordinates without a damping ratio of their own get the given one.
+void setDamping(Coordinates& coordinates, double ratio)
+{
+  for (Mode& mode : coordinates)
+  {
+    mode.damping_ratio = mode.damping_ratio.value_or(ratio);
+  }
+}
+
 /// The static deflection of a structure under a unit force at the contact, less its part in the kept modes,
 /// mass-normalised. Its mass is sum phi^2/omega^4 and its strain energy (twice) sum phi^2/omega^2 over the modes above
-/// the kept ones.
-Mode attachmentShape(const SignedStructure& side, int kept)
+/// the kept ones. Nothing where these do not move the contact point or there are none.
+std::optional<Mode> attachmentShape(const SignedStructure& side, int kept)
 {
   const Residual rest = residual(*side.structure, kept, 2);
   const double norm = std::sqrt(rest.receptance[1]);
+  if (!(norm > 0.0))
+  {
+    return std::nullopt;
+  }
   Mode shape;
   shape.frequency = std::sqrt(rest.receptance[0]) / norm;
   shape.contact_deflection = side.sign * rest.receptance[0] / norm;
@@ -191,21 +208,22 @@ Mode attachmentShape(const SignedStructure& side, int kept)
   return shape;
 }
 
-LinearState makeState(const Coordinates& coordinates, double damping_ratio)
+LinearState makeState(const Coordinates& coordinates)
 {
   const auto size = static_cast<Eigen::Index>(coordinates.size());
   LinearState state;
   state.frequency.resize(size);
   state.contact_deflection.resize(size);
   state.participation.resize(size);
+  state.damping_ratio.resize(size);
   for (Eigen::Index n = 0; n < size; ++n)
   {
     const Mode& mode = coordinates[static_cast<std::size_t>(n)];
     state.frequency(n) = mode.frequency;
     state.contact_deflection(n) = mode.contact_deflection;
     state.participation(n) = mode.participation;
+    state.damping_ratio(n) = *mode.damping_ratio;
   }
-  state.damping_ratio = Eigen::ArrayXd::Constant(size, damping_ratio);
   state.preload = Eigen::ArrayXd::Zero(size);
   return state;
 }
@@ -244,10 +262,26 @@ void assembleContactState(const std::vector<ContactMode>& modes, std::size_t row
   for (const ContactMode& contact : modes)
   {
     coordinates.push_back(contact.mode);
+    coordinates.back().damping_ratio = damping_ratio;  // what the modes had apart says nothing about the contact
   }
   mapping = shapes(modes).topRows(static_cast<Eigen::Index>(rows));
-  state = makeState(coordinates, damping_ratio);
+  state = makeState(coordinates);
   state.preload = -spring.stiffness * spring.clearance * state.contact_deflection;
+  state.gap = spring.clearance;
+}
+
+/// How far the conjoined modes that are left out open the gap under a unit force on it, m/N: what the structures yield
+/// with the spring between them, alpha/(1 + k alpha) = sum d_n^2/omega_n^2 over all modes, less the part of those kept.
+double leftOutCompliance(const std::vector<SignedStructure>& structures, const LinearState& kept, double stiffness)
+{
+  double receptance = 0.0;
+  for (const SignedStructure& side : structures)
+  {
+    receptance += side.structure->staticReceptance(0);
+  }
+  const Eigen::ArrayXd compliance =
+      (kept.contact_deflection != 0.0).select((kept.contact_deflection / kept.frequency).square(), 0.0);
+  return 1.0 / (1.0 / receptance + stiffness) - compliance.sum();
 }
 
 /// Where in `coordinates` those are that move the gap; the others keep frequency and shape in both states.
@@ -353,10 +387,17 @@ std::vector<ContactMode> ritzModes(const Coordinates& coordinates, double stiffn
   return modes;
 }
 
-/// All free modes of both structures up to `factor` times the frequency of the `count`-th of them, and for each
-/// structure how many.
-Coordinates lowestModes(const std::vector<SignedStructure>& structures, std::size_t count, double factor,
-                        std::vector<int>& kept)
+/// The lowest free modes of both structures.
+struct LowestModes
+{
+  Coordinates coordinates;
+  std::vector<int> kept;   ///< how many of each structure
+  std::size_t movers = 0;  ///< how many of the lowest `count` move the gap
+  bool all = true;         ///< there are no more
+};
+
+/// All free modes of both structures up to `factor` times the frequency of the `count`-th of them.
+LowestModes lowestModes(const std::vector<SignedStructure>& structures, std::size_t count, double factor)
 {
   Coordinates lowest;
   for (const SignedStructure& side : structures)
@@ -367,30 +408,31 @@ Coordinates lowestModes(const std::vector<SignedStructure>& structures, std::siz
       lowest.push_back(gapMode(side, m));
     }
   }
-  std::vector<double> frequencies;
-  for (const Mode& mode : lowest)
-  {
-    if (mode.frequency > 0.0)
-    {
-      frequencies.push_back(mode.frequency);
-    }
-  }
-  std::sort(frequencies.begin(), frequencies.end());
-  const double limit = frequencies.empty() ? 0.0 : factor * frequencies[std::min(count, frequencies.size()) - 1];
+  std::stable_sort(lowest.begin(), lowest.end(),
+                   [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+  lowest.resize(std::min(count, lowest.size()));
+  const double limit = factor * lowest.back().frequency;
 
-  Coordinates coordinates;
-  kept.clear();
+  LowestModes modes;
+  modes.movers = static_cast<std::size_t>(
+      std::count_if(lowest.begin(), lowest.end(), [](const Mode& mode) { return mode.contact_deflection != 0.0; }));
   for (const SignedStructure& side : structures)
   {
-    int m = 1;
-    while (m <= side.structure->modeCount() && side.structure->mode(m).frequency <= limit)
+    int kept = 0;
+    while (kept < side.structure->modeCount())
     {
-      coordinates.push_back(gapMode(side, m));
-      ++m;
+      const Mode mode = gapMode(side, kept + 1);
+      if (mode.frequency > limit)
+      {
+        break;
+      }
+      modes.coordinates.push_back(mode);
+      ++kept;
     }
-    kept.push_back(m - 1);
+    modes.kept.push_back(kept);
+    modes.all &= kept == side.structure->modeCount();
   }
-  return coordinates;
+  return modes;
 }
 
 /// What conjoined modes are made of.
@@ -403,16 +445,32 @@ struct ConjoinedSpace
 };
 
 /// The conjoined modes: dynamic Green's functions of both structures at the roots of the characteristic equation, all
-/// modes included.
+/// modes included. `rows` is cut to the free modes that there are.
 std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& structures, std::size_t count,
-                                        std::size_t rows, double stiffness, ConjoinedSpace& space)
+                                        std::size_t& rows, const SystemParameters& parameters, ConjoinedSpace& space)
 {
+  const double stiffness = parameters.contact.stiffness;
   Coordinates& coordinates = space.coordinates;
   // Each root lies below the pole above it, so that `count` modes in contact lie below the free mode `count` + 2 that
-  // moves the gap; at a contact with nodes every other mode may not. Modes above four times that frequency enter as a
-  // power series in omega^2 whose terms fall by 16 each.
-  std::vector<int> kept;
-  coordinates = lowestModes(structures, 2 * std::max(count, rows) + 2, 4.0, kept);
+  // moves the gap. Modes above four times that frequency enter as a power series in omega^2 whose terms fall by 16
+  // each.
+  std::size_t rigid = 0;
+  for (const SignedStructure& side : structures)
+  {
+    rigid += static_cast<std::size_t>(side.structure->rigidBodyModeCount());
+  }
+  const std::size_t wanted = std::max(count, rows) + 2;
+  std::size_t looked_at = 2 * wanted - 2 + rigid;
+  LowestModes lowest = lowestModes(structures, looked_at, 4.0);
+  while (lowest.movers < wanted && !lowest.all)
+  {
+    looked_at *= 2;
+    lowest = lowestModes(structures, looked_at, 4.0);
+  }
+  const std::vector<int>& kept = lowest.kept;
+  coordinates = std::move(lowest.coordinates);
+  rows = std::min(rows, coordinates.size());
+  setDamping(coordinates, parameters.damping.free);
   for (std::size_t i = 0; i < structures.size(); ++i)
   {
     for (int m = 1; m <= kept[i]; ++m)
@@ -433,6 +491,10 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
       base_response[order] += structures[i].sign * rest.base_response[order];
     }
     space.residuals.push_back(rest);
+  }
+  if (lowest.all)
+  {
+    receptance.clear();
   }
 
   const std::vector<std::size_t> indices = gapCoordinates(coordinates);
@@ -536,15 +598,15 @@ Eigen::ArrayXd frequencies(const Coordinates& coordinates)
 SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(parameters.contact)
 {
   validate(parameters);
-  scales_ = referenceScales(parameters.beam1);
+  scales_ = referenceScales(parameters);
   const std::vector<SignedStructure> structures = makeStructures(parameters);
 
   if (const auto* conjoined = std::get_if<ConjoinedBasis>(&parameters.basis))
   {
-    const auto rows = static_cast<std::size_t>(conjoined->modes_free);
+    auto rows = static_cast<std::size_t>(conjoined->modes_free);
     const auto columns = static_cast<std::size_t>(conjoined->modes_contact);
     ConjoinedSpace space;
-    std::vector<ContactMode> modes = conjoinedModes(structures, columns, rows, spring_.stiffness, space);
+    std::vector<ContactMode> modes = conjoinedModes(structures, columns, rows, parameters, space);
     sortAndCut(modes, columns);
     const Eigen::ArrayXd frequency = frequencies(space.coordinates);
     const auto free_size = static_cast<Eigen::Index>(rows);
@@ -562,10 +624,12 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
       addResidual(contact_energy_[index], space.residuals[i].receptance, modes);
     }
     space.coordinates.resize(rows);
-    free_ = makeState(space.coordinates, parameters.damping.free);
+    free_ = makeState(space.coordinates);
     assembleContactState(modes, rows, spring_, parameters.damping.contact, contact_, mapping_);
     structure_modes_ = std::move(space.modes);
     structure_coordinates_ = space.rotation.leftCols(free_size);
+    contact_.gap *= 1.0 - spring_.stiffness * leftOutCompliance(structures, contact_, spring_.stiffness);
+    free_.gap = spring_.clearance;
   }
   else
   {
@@ -573,13 +637,19 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
     Coordinates coordinates;
     for (const SignedStructure& side : structures)
     {
-      for (int m = 1; m <= modes_per_beam; ++m)
+      // A static deflection is one without the modes as a rigid body.
+      const int kept =
+          std::min(std::max(modes_per_beam, side.structure->rigidBodyModeCount()), side.structure->modeCount());
+      for (int m = 1; m <= kept; ++m)
       {
         coordinates.push_back(gapMode(side, m));
         structure_modes_.push_back({side.number(), m});
       }
-      coordinates.push_back(attachmentShape(side, modes_per_beam));
-      structure_modes_.push_back({side.number(), 0});
+      if (const std::optional<Mode> shape = attachmentShape(side, kept))
+      {
+        coordinates.push_back(*shape);
+        structure_modes_.push_back({side.number(), 0});
+      }
     }
     buildFromSpace(std::move(coordinates), parameters.damping);
   }
@@ -604,6 +674,10 @@ SwitchedModel::SwitchedModel(const std::vector<Mode>& modes, const ContactParame
     if (!std::isfinite(mode.contact_deflection) || !std::isfinite(mode.participation))
     {
       refuse("contact deflection or participation of the mode at (rad/s)", mode.frequency, "finite");
+    }
+    if (!(mode.damping_ratio.value_or(0.0) >= 0.0 && mode.damping_ratio.value_or(0.0) < 1.0))
+    {
+      refuse("damping ratio of a mode", *mode.damping_ratio, "from 0 to below 1");
     }
   }
   if (!std::isfinite(contact.stiffness) || contact.stiffness <= 0.0)
@@ -630,8 +704,10 @@ SwitchedModel::SwitchedModel(const std::vector<Mode>& modes, const ContactParame
 
 void SwitchedModel::buildFromSpace(std::vector<Mode> coordinates, const DampingParameters& damping)
 {
+  setDamping(coordinates, damping.free);
   structure_coordinates_ = separateEqualFrequencies(coordinates);
-  free_ = makeState(coordinates, damping.free);
+  free_ = makeState(coordinates);
+  free_.gap = spring_.clearance;
   std::vector<ContactMode> modes = ritzModes(coordinates, spring_.stiffness);
   sortAndCut(modes, modes.size());
   assembleContactState(modes, coordinates.size(), spring_, damping.contact, contact_, mapping_);

@@ -92,11 +92,12 @@ void SwitchedMotion::tabulate(int state)
     if (linear.contact_deflection(n) != 0.0)
     {
       t.gap_body = n;
+      t.body_deflection = linear.contact_deflection(n);
       t.body_pull = linear.contact_deflection(n) * linear.participation(n);
     }
   }
 
-  t.line_constant = model_->clearance() + (linear.contact_deflection * t.standing).sum();
+  t.line_constant = linear.gap + (linear.contact_deflection * t.standing).sum();
   if (state == 1 && tables_[0].gap_body >= 0)
   {
     t.line_constant = 0.0;  // nothing presses a free body against the spring
@@ -217,15 +218,7 @@ void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
       }
     }
   }
-  if (!in_coordinates_)
-  {
-    closeSpan();
-    if (state_ == 1)
-    {
-      closeIntegrals();
-    }
-    toCoordinates();
-  }
+  leaveExponentials();
   drive_frequency_ = frequency;
   drive_amplitude_ = amplitude;
   setInterval(two_pi / frequency);
@@ -233,7 +226,6 @@ void SwitchedMotion::setHarmonicDrive(double frequency, double amplitude)
   {
     tabulatePhasor(state);
   }
-  in_coordinates_ = true;
   restartIntervalCount();
 }
 
@@ -267,6 +259,7 @@ void SwitchedMotion::rest()
   rate_ = bound_ = 0.0;
   resolution_ = gap_rounding * std::abs(clearance);
   intervals_ = impacts_ = 0;
+  contact_time_ = 0.0;
   if (state_ == 1)
   {
     beginEpisode(0.0, 0.0, 0.0);
@@ -279,6 +272,93 @@ void SwitchedMotion::start(const Eigen::VectorXd& displacement, const Eigen::Vec
 {
   rest();
   setFreeCoordinates(displacement, velocity);
+}
+
+void SwitchedMotion::takeOver(SwitchedMotion& previous, ImpactSink& sink)
+{
+  previous.leaveExponentials();
+  const SwitchedModel& before = *previous.model_;
+  const Vectors& from = previous.vectors();
+  gap_ = previous.gap_ + (linearState(previous.state_).gap - previous.linearState(previous.state_).gap);
+  rate_ = previous.rate_;
+  time_ = previous.time_;
+  start_acceleration_ = previous.start_acceleration_;
+  slope_ = previous.slope_;
+  farthest_ = previous.farthest_;
+  resolution_ = previous.resolution_ + gap_rounding * (std::abs(before.clearance()) + std::abs(model_->clearance()));
+  intervals_ = previous.intervals_;
+  switches_ = previous.switches_;
+  switch_limit_reached_ = previous.switch_limit_reached_;
+  steps_total_ = previous.steps_total_;
+  peak_evaluations_ = previous.peak_evaluations_;
+  contact_time_ = previous.contact_time_;
+
+  // Within its rounding of zero the gap decides nothing.
+  state_ = std::abs(gap_) <= resolution_ ? previous.state_ : (gap_ < 0.0 ? 1 : 0);
+  Vectors& to = vectors();
+  const bool same_modes = model_->stiffness() == before.stiffness() && linearState(1).size() == before.contact().size();
+  const auto map = [](const auto& matrix, const Vectors& source, Vectors& result)
+  {
+    result.displacement.noalias() = matrix * source.displacement;
+    result.velocity.noalias() = matrix * source.velocity;
+  };
+  if (previous.state_ == 0 && state_ == 1)
+  {
+    map(model_->mapping().transpose(), from, to);
+  }
+  else if (previous.state_ == 1 && state_ == 0)
+  {
+    map(before.mapping(), from, to);
+  }
+  else if (state_ == 1 && !same_modes)
+  {
+    map(before.mapping(), from, vectors_[0]);
+    map(model_->mapping().transpose(), vectors_[0], to);
+  }
+  else
+  {
+    to.displacement = from.displacement;
+    to.velocity = from.velocity;
+  }
+  in_coordinates_ = true;
+  takeOverAccount(previous);
+
+  if (previous.state_ == 1 && state_ == 0)
+  {
+    previous.episode_.impact.cut_short = true;
+    previous.endEpisode(sink);
+  }
+  impacts_ = previous.impacts_;
+  if (state_ == 0)
+  {
+    return;
+  }
+  if (previous.state_ == 0)
+  {
+    beginEpisode(0.0, 0.0, 0.0);
+    episode_.impact.cut_short = true;
+    return;
+  }
+  // The episode goes on under another force.
+  previous.closeForce();
+  episode_ = previous.episode_;
+  episode_.smallest_gap = gap_;
+  episode_.smallest_gap_time = episode_.elapsed;
+}
+
+/// What the change does to the spring is work from outside. A truncated mapping takes its share of the structures'.
+void SwitchedMotion::takeOverAccount(const SwitchedMotion& previous)
+{
+  EnergyAccount before;
+  previous.storeEnergy(previous.vectors().displacement, previous.vectors().velocity, previous.gap_, before);
+  account_ = previous.account_;
+  storeEnergy(vectors().displacement, vectors().velocity, gap_, account_);
+  const double contact_work = account_.spring + account_.left_out - before.spring - before.left_out;
+  const double mapping_loss =
+      model_->lossless() ? 0.0 : before.structure1 + before.structure2 - account_.structure1 - account_.structure2;
+  account_.contact_work += contact_work;
+  account_.mapping_loss += mapping_loss;
+  account_.turnover += std::abs(contact_work) + std::abs(mapping_loss);
 }
 
 void SwitchedMotion::setFreeCoordinates(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
@@ -393,6 +473,7 @@ double SwitchedMotion::bodyVelocity(Eigen::Index n, double time) const
   return z(z.size() / 2 + n) - t * linearState(state_).participation(n) * (acceleration(body_time_) + slope_ * t / 2.0);
 }
 
+/// To the end of the interval.
 void SwitchedMotion::moveBodies()
 {
   Eigen::VectorXd& z = vectors().exponentials;
@@ -438,9 +519,9 @@ double SwitchedMotion::energy(int state, const Eigen::VectorXd& displacement, co
   if (state == 1)
   {
     // The spring's 1/2 k g^2 with g = clearance + d.eta: its quadratic part is in the frequencies, its linear one is
-    // the preload.
-    sum += -(linear.preload * displacement.array()).sum() +
-           0.5 * model_->stiffness() * model_->clearance() * model_->clearance();
+    // the preload. Modes that are left out stand deflected by the preload.
+    sum +=
+        -(linear.preload * displacement.array()).sum() + 0.5 * model_->stiffness() * model_->clearance() * linear.gap;
   }
   return sum;
 }
@@ -469,34 +550,11 @@ void SwitchedMotion::evaluate(const Eigen::VectorXd& exponentials, double time, 
   rate = lineRate(time) + dot(t.derivative.data() + 2 * size, exponentials.data(), size);
 }
 
-double SwitchedMotion::lineGap(double time) const
-{
-  const Tables& t = now();
-  const double line = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_;
-  return t.gap_body < 0
-             ? line
-             : line + linearState(state_).contact_deflection(t.gap_body) * bodyDisplacement(t.gap_body, time);
-}
-
-double SwitchedMotion::lineRate(double time) const
-{
-  const Tables& t = now();
-  const double line = -t.line_compliance * slope_;
-  return t.gap_body < 0 ? line
-                        : line + linearState(state_).contact_deflection(t.gap_body) * bodyVelocity(t.gap_body, time);
-}
-
 double SwitchedMotion::derivative(int order) const
 {
   const Tables& t = now();
   const double body = order == 2 ? -t.body_pull * acceleration(time_) : order == 3 ? -t.body_pull * slope_ : 0.0;
   return body + t.derivative.col(order + 1).dot(vectors().exponentials);
-}
-
-double SwitchedMotion::bodyBound(int order) const
-{
-  const double size = std::abs(now().body_pull);
-  return order == 2 ? size * farthest_ : order == 3 ? size * std::abs(slope_) : 0.0;
 }
 
 void SwitchedMotion::evaluate()
@@ -526,8 +584,7 @@ void SwitchedMotion::refreshBound()
   {
     const Eigen::VectorXd& z = vectors().exponentials;
     const double left = length_ - body_time_;
-    terms += std::abs(linearState(state_).contact_deflection(t.gap_body)) *
-                 (std::abs(z(t.gap_body)) + left * std::abs(z(z.size() / 2 + t.gap_body))) +
+    terms += std::abs(t.body_deflection) * (std::abs(z(t.gap_body)) + left * std::abs(z(z.size() / 2 + t.gap_body))) +
              0.5 * left * left * bodyBound(2);
   }
   resolution_ = gap_rounding * terms;
@@ -553,7 +610,7 @@ void SwitchedMotion::advanceLinear(double from, double to, ImpactSink& sink)
     // Displacement and velocity are continuous; the quasi-static part takes the new slope at once and z makes up for
     // it.
     change = slope - slope_;
-    now().energy.pass(vectors().exponentials, change, slope_, length_);
+    now().energy.pass(change, slope_, length_);
     slope_ = slope;
     bound_ += std::abs(change) * now().kick_bound;
   }
@@ -579,6 +636,21 @@ void SwitchedMotion::advanceHarmonic(ImpactSink& sink)
     ++span_intervals_;
   }
   advanceInterval(0.0, sink);
+}
+
+/// From exponentials to displacement and velocity, from which any other drive or contact can go on.
+void SwitchedMotion::leaveExponentials()
+{
+  if (!in_coordinates_)
+  {
+    closeSpan();
+    if (state_ == 1)
+    {
+      closeIntegrals();
+    }
+    toCoordinates();
+    in_coordinates_ = true;
+  }
 }
 
 void SwitchedMotion::startFromCoordinates()
@@ -687,6 +759,9 @@ void SwitchedMotion::storeEnergy(const Eigen::VectorXd& displacement, const Eige
   account.structure1 = energy(1);
   account.structure2 = energy(2);
   account.spring = state_ == 0 ? 0.0 : 0.5 * model_->stiffness() * gap * gap;
+  // What is in the total, energy(), besides.
+  const double standing_gap = linearState(state_).gap;
+  account.left_out = model_->stiffness() * (model_->clearance() - standing_gap) * (gap - 0.5 * standing_gap);
 }
 
 void SwitchedMotion::recordHistory(HistorySample* samples, std::size_t per_interval)
@@ -704,11 +779,11 @@ void SwitchedMotion::beginHistoryPiece()
 void SwitchedMotion::takeHistory()
 {
   Vectors& v = vectors();
-  const auto sampleTime = [this](std::size_t number)
+  const auto sample_time = [this](std::size_t number)
   { return length_ * (static_cast<double>(number) / static_cast<double>(history_size_)); };
-  for (; history_taken_ + 1 < history_size_ && sampleTime(history_taken_ + 1) <= time_; ++history_taken_)
+  for (; history_taken_ + 1 < history_size_ && sample_time(history_taken_ + 1) <= time_; ++history_taken_)
   {
-    const double time = sampleTime(history_taken_ + 1);
+    const double time = sample_time(history_taken_ + 1);
     v.trial = v.history;
     rotateTicks(v.trial, static_cast<std::int64_t>(std::llround((time - history_start_) / tick_)));
     HistorySample& sample = *history_++;
@@ -738,7 +813,7 @@ void SwitchedMotion::endHistoryInterval()
 void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
 {
   Vectors& v = vectors();
-  const Tables& t = now();
+  Tables& t = now();
   if (state_ == 1)
   {
     v.before = v.exponentials;
@@ -760,7 +835,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
     const double gap_before = gap_;
     const double rate_before = rate_;
     const Eigen::Index half = t.factor_re.rows();
-    const Forms forms = kickGrowEvaluate(v.exponentials.data(), slope_change, t.kick.data(),
+    const Forms forms = kickGrowEvaluate(v.exponentials.data(), t.energy.kicks(), slope_change, t.kick.data(),
                                          t.factor_re.data() + doublings_ * half, t.factor_im.data() + doublings_ * half,
                                          t.derivative.data() + 2 * half, t.derivative.data() + 4 * half, half);
     time_ = length_;
@@ -773,6 +848,7 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
   }
   else
   {
+    addScaled(t.energy.kicks(), slope_change, v.exponentials.data(), v.exponentials.size());
     addScaled(v.exponentials.data(), slope_change, t.kick.data(), t.kick.size());
     locateSwitches(sink);
     time_ = length_;
@@ -785,7 +861,10 @@ void SwitchedMotion::advanceInterval(double slope_change, ImpactSink& sink)
   {
     takeHistory();
   }
-  moveBodies();
+  if (now().bodies > 0)
+  {
+    moveBodies();
+  }
   ++intervals_;
   if (history_ != nullptr)
   {
@@ -1091,16 +1170,30 @@ void SwitchedMotion::endPiece()
   const double mean = 0.5 * (acceleration(episode_.piece_start) + acceleration(time_));
   episode_.gap_integral += duration * (t.line_constant - t.line_compliance * mean + t.line_lag * slope_);
   episode_.elapsed += duration;
+  contact_time_ += duration;
+}
+
+/// Adds what the force of this contact has done since it holds.
+void SwitchedMotion::closeForce()
+{
+  Impact& impact = episode_.impact;
+  episode_.impulse -= model_->stiffness() * episode_.gap_integral;
+  episode_.gap_integral = 0.0;
+  const double peak_force = -model_->stiffness() * episode_.smallest_gap;
+  if (peak_force > impact.peak_force)
+  {
+    impact.peak_force = peak_force;
+    impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
+  }
 }
 
 void SwitchedMotion::endEpisode(ImpactSink& sink)
 {
+  closeForce();
   Impact& impact = episode_.impact;
   impact.number = impacts_++;
   impact.duration = std::max(0.0, episode_.elapsed);
-  impact.impulse = -model_->stiffness() * episode_.gap_integral;
-  impact.peak_force = std::max(0.0, -model_->stiffness() * episode_.smallest_gap);
-  impact.peak_time = std::max(0.0, episode_.smallest_gap_time);
+  impact.impulse = episode_.impulse;
   impact.energy_lost = impact.dissipated + impact.mapping_loss;
   // The impulse is the small difference of large terms where the episode is shallow or short. Within their rounding,
   // which adds up over its intervals and steps, it is what duration and peak allow.

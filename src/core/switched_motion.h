@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -73,6 +74,15 @@ public:
   /// The same for a given motion, in the coordinates of S0.
   void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
 
+  /// Between two intervals, goes on where `previous` is, which moves a model of the same structures with another
+  /// contact (the same coordinates in S0); `previous` is of no use afterwards. Displacements and velocities are kept,
+  /// the gap changes by the change of the clearance, and its sign decides the state. An open episode goes on if the
+  /// contact does; it is reported as cut short if not. Nothing is allocated.
+  ///
+  /// In the conjoined basis what must be mapped loses: where the stiffness is another one, all that is in S1 passes
+  /// through S0. A change of clearance alone maps nothing, unless it switches the state.
+  void takeOver(SwitchedMotion& previous, ImpactSink& sink);
+
   /// Advances over one interval in which the base acceleration goes from `from` to `to` in a straight line.
   void advanceLinear(double from, double to, ImpactSink& sink);
 
@@ -123,6 +133,11 @@ public:
   {
     return switch_limit_reached_;
   }
+  /// Time spent in S1 since rest(), s.
+  double contactTime() const
+  {
+    return contact_time_;
+  }
   std::uint64_t switches() const
   {
     return switches_;
@@ -154,6 +169,7 @@ private:
   {
     Eigen::Index bodies = 0;                  // coordinates without stiffness, which come first
     Eigen::Index gap_body = -1;               // the one of them that moves the gap, or none
+    double body_deflection = 0.0;             // its w
     double body_pull = 0.0;                   // w Gamma of that one
     Eigen::ArrayXd decay, damped;             // -Re lambda, Im lambda, per mode
     Eigen::ArrayXd compliance;                // Gamma/omega^2: quasi-static response to -a
@@ -190,6 +206,7 @@ private:
     double smallest_gap_time = 0.0;  // since onset
     double elapsed = 0.0;            // up to the start of the piece
     double gap_integral = 0.0;
+    double impulse = 0.0;  // up to the last change of the contact
     std::uint64_t first_step = 0;
     // the piece: the part of the episode inside the present interval
     double piece_start = 0.0;  // time in the interval
@@ -215,6 +232,7 @@ private:
     return state_ == 0 ? 1.0 : -1.0;
   }
 
+  void leaveExponentials();
   void startFromCoordinates();
   void advanceInterval(double slope_change, ImpactSink& sink);
   void locateSwitches(ImpactSink& sink);
@@ -238,12 +256,26 @@ private:
   void rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const;
   void evaluate();
   void evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const;
-  double lineGap(double time) const;
-  double lineRate(double time) const;
+  double lineGap(double time) const
+  {
+    const Tables& t = now();
+    const double line = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_;
+    return t.gap_body < 0 ? line : line + t.body_deflection * bodyDisplacement(t.gap_body, time);
+  }
+  double lineRate(double time) const
+  {
+    const Tables& t = now();
+    const double line = -t.line_compliance * slope_;
+    return t.gap_body < 0 ? line : line + t.body_deflection * bodyVelocity(t.gap_body, time);
+  }
   /// The second or a higher derivative of the gap now.
   double derivative(int order) const;
   /// Bounds the same derivative of the polynomial p in the present interval.
-  double bodyBound(int order) const;
+  double bodyBound(int order) const
+  {
+    const double size = std::abs(now().body_pull);
+    return order == 2 ? size * farthest_ : order == 3 ? size * std::abs(slope_) : 0.0;
+  }
   double curvatureBound() const
   {
     return bound_ + bodyBound(2);
@@ -252,7 +284,7 @@ private:
   double bodyDisplacement(Eigen::Index n, double time) const;
   double bodyVelocity(Eigen::Index n, double time) const;
   void moveBodies();
-  double bodyEnergy(const Eigen::VectorXd& exponentials, double time) const;
+  double bodyEnergy(const Eigen::VectorXd& z, double time) const;
   /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own,
   /// but for bodyBound().
   double boundOfDerivative(int order) const;
@@ -279,6 +311,7 @@ private:
   }
 
   void openAccount();
+  void takeOverAccount(const SwitchedMotion& previous);
   SpanEnergy::Moment moment(const Eigen::VectorXd& exponentials, double time) const;
   void openSpan();
   void closeSpan();
@@ -290,6 +323,7 @@ private:
   void closeIntegrals();
   void beginPiece();
   void endPiece();
+  void closeForce();
   void endEpisode(ImpactSink& sink);
   void notePeak(double gap, double time);
   void watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before);
@@ -336,6 +370,7 @@ private:
   std::uint64_t steps_total_ = 0;
   std::uint64_t peak_evaluations_ = 0;
   std::uint64_t impacts_ = 0;
+  double contact_time_ = 0.0;  // s
   Episode episode_;
   EnergyAccount account_;             // of the spans that have ended; what is stored is filled in when asked for
   std::uint64_t span_intervals_ = 0;  // of the harmonic drive since the span began

@@ -80,6 +80,9 @@ void toMessage(const StampedImpact& impact, Impact& message)
   message.separation_speed = impact.impact.separation_speed;
   message.energy_lost = impact.impact.energy_lost;
   message.cut_short = impact.impact.cut_short;
+  message.dissipated = impact.impact.dissipated;
+  message.mapping_loss = impact.impact.mapping_loss;
+  message.base_work = impact.impact.base_work;
 }
 
 void toMessage(const core::SwitchedModel& model, const std::string& configuration, const std::string& version,
@@ -93,6 +96,8 @@ void toMessage(const core::SwitchedModel& model, const std::string& configuratio
   message.free_frequencies = hertz(model.free().frequency);
   message.contact_frequencies = hertz(model.contact().frequency);
   message.mapping_loss.assign(loss.data(), loss.data() + loss.size());
+  message.seq = 0;
+  message.number = 0;
 }
 
 void fromMessage(const BaseExcitation& message, Samples& samples)
@@ -125,6 +130,9 @@ StampedImpact fromMessage(const Impact& message)
   impact.impact.separation_speed = message.separation_speed;
   impact.impact.energy_lost = message.energy_lost;
   impact.impact.cut_short = message.cut_short;
+  impact.impact.dissipated = message.dissipated;
+  impact.impact.mapping_loss = message.mapping_loss;
+  impact.impact.base_work = message.base_work;
   return impact;
 }
 

@@ -189,7 +189,8 @@ struct RecordedRun::Implementation
   RecordedTopics topics;
 };
 
-RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::string& name_space)
+RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::string& name_space,
+                         RecordedContents contents)
     : implementation_(std::make_unique<Implementation>())
 {
   Implementation& self = *implementation_;
@@ -216,10 +217,14 @@ RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::strin
     throw config::Error(damaged(self.names, error.what()));
   }
   self.topics.base_excitation = self.find<BaseExcitation>(name_space, true);
-  self.topics.gap = self.find<Gap>(name_space, true);
-  self.topics.contact_force = self.find<ContactForce>(name_space, true);
-  self.topics.impact = self.find<Impact>(name_space, false);
-  self.topics.model_info = self.find<ModelInfo>(name_space, true);
+  const bool whole = contents == RecordedContents::whole_run;
+  if (whole)
+  {
+    self.topics.gap = self.find<Gap>(name_space, true);
+    self.topics.contact_force = self.find<ContactForce>(name_space, true);
+    self.topics.impact = self.find<Impact>(name_space, false);
+  }
+  self.topics.model_info = self.find<ModelInfo>(name_space, whole);
 }
 
 RecordedRun::~RecordedRun() = default;
@@ -234,10 +239,14 @@ const RecordedTopics& RecordedRun::topics() const
 void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
 {
   const RecordedTopics& topics = implementation_->topics;
-  std::vector<std::string> wanted = {topics.base_excitation, topics.gap, topics.contact_force, topics.model_info};
-  if (!topics.impact.empty())
+  std::vector<std::string> wanted;
+  for (const std::string* topic :
+       {&topics.base_excitation, &topics.gap, &topics.contact_force, &topics.model_info, &topics.impact})
   {
-    wanted.push_back(topics.impact);
+    if (!topic->empty())
+    {
+      wanted.push_back(*topic);
+    }
   }
   implementation_->read(wanted, progress,
                         [&](const rosbag::MessageInstance& instance)
@@ -266,6 +275,15 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
                             sink.onModelInfo(*messageOf<ModelInfo>(instance));
                           }
                         });
+}
+
+void RecordedRun::readModelInfo(const std::function<void(const ModelInfo&)>& sink) const
+{
+  if (!implementation_->topics.model_info.empty())
+  {
+    implementation_->read({implementation_->topics.model_info}, {},
+                          [&](const rosbag::MessageInstance& instance) { sink(*messageOf<ModelInfo>(instance)); });
+  }
 }
 
 void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress) const

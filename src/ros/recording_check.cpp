@@ -123,7 +123,6 @@ void RecordingCheck::takeContactForce(const BlockHead& block, const std::vector<
   {
     const bool was_in_contact = in_contact;
     in_contact = force[i] != 0.0;  // a truncated basis pulls, too
-    contact_ = contact_ || in_contact;
     if (was_in_contact && !in_contact)
     {
       last_separated_ = std::max(last_separated_, block.seq + i);
@@ -281,10 +280,10 @@ RecordingSummary RecordingCheck::finish()
   {
     throw config::Error("topic " + topics_.base_excitation + ": holds no block of excitation");
   }
-  if (contact_ && topics_.impact.empty())
+  if (last_separated_ > 0 && topics_.impact.empty())
   {
     throw config::Error("topic " + topics_.contact_force +
-                        ": shows contact, but the recording holds no topic of type vibro_impact/Impact");
+                        ": shows a contact that ends, but the recording holds no topic of type vibro_impact/Impact");
   }
   // Before the first impact none can be missing unless the recording begins in the middle of the stream.
   if (first_impact_ && excitation_.front().seq == 0)

@@ -5,8 +5,10 @@
 #include <optional>
 #include <utility>
 
+#include "text.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/core/parameters.h"
+#include "vibro_impact/ros/contact_history.h"
 #include "vibro_impact/ros/conversions.h"
 
 namespace vibro_impact::graph
@@ -24,12 +26,55 @@ BlockHead headOf(const BaseExcitation& block)
   return {block.seq, block.acceleration.size(), block.header.stamp, block.sample_period};
 }
 
+// The samples in contact, as the force shows them.
+class ContactTrace
+{
+public:
+  void add(const BlockHead& block, const std::vector<double>& force)
+  {
+    for (std::size_t i = 0; i < force.size(); ++i)
+    {
+      const std::uint64_t seq = block.seq + i;
+      if (force[i] == 0.0 || seq < end())
+      {
+        continue;
+      }
+      if (seq > end() || stretches_.empty())
+      {
+        stretches_.emplace_back(seq, seq);
+      }
+      stretches_.back().second = seq + 1;
+    }
+  }
+
+  // Of the samples from `first` to the one before `last`.
+  double share(std::uint64_t first, std::uint64_t last) const
+  {
+    auto stretch = std::lower_bound(stretches_.begin(), stretches_.end(), first,
+                                    [](const auto& candidate, std::uint64_t seq) { return candidate.second <= seq; });
+    std::uint64_t sum = 0;
+    for (; stretch != stretches_.end() && stretch->first < last; ++stretch)
+    {
+      sum += std::min(last, stretch->second) - std::max(first, stretch->first);
+    }
+    return static_cast<double>(sum) / static_cast<double>(last - first);
+  }
+
+private:
+  std::uint64_t end() const
+  {
+    return stretches_.empty() ? 0 : stretches_.back().second;
+  }
+
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> stretches_;  // first sample, and the one after the last
+};
+
 // Everything that one reading of a recording tells.
 class Survey : public RecordingSink
 {
 public:
   Survey(const RecordedTopics& topics, const core::StepSearchOptions& options)
-      : check_(topics), topics_(topics), options_(options)
+      : check_(topics), options_(options), contacts_(topics.model_info)
   {
   }
 
@@ -61,6 +106,7 @@ public:
   void onContactForce(const BlockHead& block, const std::vector<double>& force) override
   {
     check_.takeContactForce(block, force);
+    trace_.add(block, force);
   }
 
   void onImpact(const Impact& impact) override
@@ -73,36 +119,33 @@ public:
 
   void onModelInfo(const ModelInfo& info) override
   {
-    if (!info_)
-    {
-      info_ = info;
-    }
-    else if (info_->configuration != info.configuration)
-    {
-      throw config::Error("topic " + topics_.model_info +
-                          ": the configuration changes within the recording; cut it there with 'rosbag filter' and "
-                          "extract the parts one by one");
-    }
+    contacts_.add(info);
   }
 
   RecordingSummary summary()
   {
-    return check_.finish();
+    RecordingSummary summary = check_.finish();
+    const std::vector<Loss> unknown = contacts_.losses(summary.first);
+    summary.losses.insert(summary.losses.end(), unknown.begin(), unknown.end());
+    std::stable_sort(summary.losses.begin(), summary.losses.end(),
+                     [](const Loss& a, const Loss& b) { return a.first < b.first; });
+    return summary;
+  }
+
+  const ContactHistory& contacts() const
+  {
+    return contacts_;
+  }
+
+  const ContactTrace& trace() const
+  {
+    return trace_;
   }
 
   // After summary().
   std::vector<core::FoundStep> steps()
   {
     return finder_->finish();
-  }
-
-  core::ReferenceScales scales() const
-  {
-    if (!info_)
-    {
-      throw config::Error("topic " + topics_.model_info + ": holds no message");
-    }
-    return core::referenceScales(fromMessage(*info_).beam1);
   }
 
   // On the stream's time axis, by ascending onset.
@@ -120,12 +163,31 @@ public:
 
 private:
   RecordingCheck check_;
-  RecordedTopics topics_;
   core::StepSearchOptions options_;
   std::optional<core::DriveStepFinder> finder_;
   std::vector<Impact> impacts_;
-  std::optional<ModelInfo> info_;
+  ContactHistory contacts_;
+  ContactTrace trace_;
 };
+
+// The steps, cut where the contact changes.
+std::vector<core::FoundStep> cutAtChanges(const std::vector<core::FoundStep>& steps, const ContactHistory& history)
+{
+  std::vector<core::FoundStep> parts;
+  for (core::FoundStep rest : steps)
+  {
+    for (const DatedContact& dated : history.contacts())
+    {
+      if (dated.seq > rest.first && dated.seq < rest.last)
+      {
+        parts.push_back(rest);
+        parts.back().last = rest.first = dated.seq;
+      }
+    }
+    parts.push_back(rest);
+  }
+  return parts;
+}
 
 void requireNoLoss(const RecordingSummary& summary)
 {
@@ -207,8 +269,29 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
   {
     requireNoLoss(summary);
   }
-  const core::ReferenceScales scales = survey.scales();
-  const auto steps = measure(recording, survey.steps(), summary.sample_period,
+  const ContactHistory& history = survey.contacts();
+  const core::ReferenceScales scales = core::referenceScales(history.parameters());
+  for (const DatedContact& dated : history.contacts())
+  {
+    extraction.contacts.push_back({dated, 0});
+  }
+  const auto cycles = [&](const core::FoundStep& step)
+  { return static_cast<double>(step.last - step.first) * summary.sample_period * step.frequency / two_pi; };
+  std::vector<core::FoundStep> found;
+  for (const core::FoundStep& part : cutAtChanges(survey.steps(), history))
+  {
+    if (cycles(part) >= options.steps.shortest_step)
+    {
+      found.push_back(part);
+    }
+    else
+    {
+      extraction.left_out.push_back({part.frequency / scales.frequency, part.first, part.last,
+                                     text("changes of the contact leave ", cycles(part),
+                                          " cycles, a step has at least ", options.steps.shortest_step)});
+    }
+  }
+  const auto steps = measure(recording, found, summary.sample_period,
                              [&](double share)
                              {
                                if (progress)
@@ -216,7 +299,7 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
                                  progress(first_reading + (1.0 - first_reading) * share);
                                }
                              });
-  if (steps.empty())
+  if (steps.empty() && extraction.left_out.empty())
   {
     throw config::Error("topic " + recording.topics().base_excitation +
                         ": no steps of constant frequency found in its " + std::to_string(summary.samples) +
@@ -226,18 +309,22 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
   const auto impacts = survey.impacts(summary.sample_period);
   for (const core::MeasuredStep& measured : steps)
   {
-    const core::DriveStep step = core::driveStep(measured, summary.sample_period);
+    core::DriveStep step = core::driveStep(measured, summary.sample_period);
     if (const Loss* loss = lossIn(measured, summary.losses, summary.sample_period))
     {
       extraction.left_out.push_back({step.frequency / scales.frequency, measured.first, measured.last, loss->reason});
       continue;
     }
+    const DatedContact& dated = history.at(measured.first);
+    step.contact = dated.contact;
+    step.contact_share = survey.trace().share(measured.first + (measured.last - measured.first) / 2, measured.last);
+    ++extraction.contacts[static_cast<std::size_t>(&dated - history.contacts().data())].responses;
     extraction.responses.push_back(core::evaluateResponse(step, within(impacts, step), scales, options.response));
   }
   if (extraction.responses.empty())
   {
-    throw config::Error("no step is left: all " + std::to_string(steps.size()) +
-                        " have losses, the first: " + extraction.left_out.front().reason);
+    throw config::Error("no step is left: all " + std::to_string(extraction.left_out.size()) +
+                        " are left out, the first: " + extraction.left_out.front().reason);
   }
   return extraction;
 }

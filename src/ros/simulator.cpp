@@ -5,6 +5,7 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/Float64.h>
 
+#include "text.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/ros/conversions.h"
 
@@ -29,8 +30,7 @@ SimulatorParameters readParameters(const ros::NodeHandle& private_node)
 
 Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(readParameters(private_node)),
-      model_(std::make_shared<core::SwitchedModel>(parameters_.system)),
-      simulation_(model_, parameters_.limits),
+      simulation_(std::make_shared<const core::SwitchedModel>(parameters_.system), parameters_.limits),
       extremes_(parameters_.mirror_rate),
       guard_(parameters_.max_input_age),
       statistics_(node.resolveName("base_excitation"), parameters_.max_input_age),
@@ -42,7 +42,8 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   impact_publisher_ = node.advertise<Impact>("impact", impact_queue);
   wrench_publisher_ = node.advertise<geometry_msgs::WrenchStamped>("contact_wrench", mirror_queue);
   gap_now_publisher_ = node.advertise<std_msgs::Float64>("gap_now", mirror_queue);
-  publishModelInfo(node);
+  model_info_publisher_ = node.advertise<ModelInfo>("model_info", StreamSimulation::max_waiting_changes, true);
+  publishModelInfo(simulation_.model(), 0, ros::Time());
 
   // The updater's own timing follows ros::Time, which stands still while a bag that gives the time is paused.
   diagnostics_.setHardwareID("none");
@@ -53,12 +54,14 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
                          last_input_ ? std::optional<double>((ros::SteadyTime::now() - *last_input_).toSec())
                                      : std::nullopt;
                      statistics_.report(age, status);
+                     report(simulation_.energyAccount(), status);
                    });
   diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
                                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
   waiting_timer_ = node.createWallTimer(ros::WallDuration(waiting_period), &Simulator::onWaiting, this);
 
   reset_server_ = private_node.advertiseService("reset", &Simulator::onReset, this);
+  set_contact_server_ = private_node.advertiseService("set_contact", &Simulator::onSetContact, this);
   excitation_subscriber_ =
       node.subscribe("base_excitation", queue_size, &Simulator::onExcitation, this, ros::TransportHints().tcpNoDelay());
   // Also because roscpp's first line of the log registers the node anew: were it the last one, said to a newer node of
@@ -111,6 +114,26 @@ bool Simulator::onReset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigg
   return true;
 }
 
+bool Simulator::onSetContact(SetContact::Request& request, SetContact::Response& response)
+{
+  try
+  {
+    core::SystemParameters changed = parameters_.system;
+    changed.contact = {request.stiffness, request.clearance};
+    simulation_.setContact(std::make_shared<const core::SwitchedModel>(changed), request.seq);
+    response.success = true;
+    response.message =
+        request.seq == 0 ? "holds from the next sample on" : text("holds from sample ", request.seq, " on");
+  }
+  catch (const std::exception& error)
+  {
+    response.success = false;
+    response.message = error.what();
+    ROS_ERROR_COND(contact_refusals_.due(), "contact not changed: %s", error.what());
+  }
+  return true;
+}
+
 void Simulator::onWaiting(const ros::WallTimerEvent& /*event*/)
 {
   ROS_WARN("still waiting for data on topic %s ...", excitation_subscriber_.getTopic().c_str());
@@ -118,6 +141,11 @@ void Simulator::onWaiting(const ros::WallTimerEvent& /*event*/)
 
 void Simulator::publish(const StreamSimulation::Answer& answer)
 {
+  for (const StreamSimulation::ContactChange& change : answer.contact_changes)
+  {
+    ++contact_changes_;
+    publishModelInfo(*change.model, change.seq, toTime(change.stamp));
+  }
   for (const StampedImpact& impact : answer.impacts)
   {
     toMessage(impact, impact_);
@@ -145,11 +173,15 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
   }
 }
 
-void Simulator::publishModelInfo(ros::NodeHandle& node)
+void Simulator::publishModelInfo(const core::SwitchedModel& model, std::uint64_t seq, const ros::Time& stamp)
 {
+  core::SystemParameters system = parameters_.system;
+  system.contact = {model.stiffness(), model.clearance()};
   ModelInfo info;
-  toMessage(*model_, config::toYaml(parameters_.system), VIBRO_IMPACT_VERSION, info);
-  model_info_publisher_ = node.advertise<ModelInfo>("model_info", 1, true);
+  toMessage(model, config::toYaml(system), VIBRO_IMPACT_VERSION, info);
+  info.header.stamp = stamp;
+  info.seq = seq;
+  info.number = contact_changes_;
   model_info_publisher_.publish(info);
 }
 

@@ -58,6 +58,7 @@ SimulatorParameters parseSimulatorParameters(const XmlRpcValue& tree, const std:
   StreamLimits& limits = parameters.limits;
   ParameterReader reader(tree, "");
   const XmlRpcValue model = reader.take({"beam1", "beam2", "contact", "damping", "basis"});
+  const std::string directory = reader.text("configuration_directory", "");
   limits.max_acceleration =
       reader.positive("max_acceleration", limits.max_acceleration, highest_acceleration, " (m/s^2)");
   limits.max_bridged_gap = reader.nonNegative("max_bridged_gap", limits.max_bridged_gap, longest_time, " (s)");
@@ -77,7 +78,7 @@ SimulatorParameters parseSimulatorParameters(const XmlRpcValue& tree, const std:
   }
   try
   {
-    parameters.system = config::parse(toYaml(model), name);
+    parameters.system = config::parse(toYaml(model), name, directory);
   }
   catch (const config::Error& error)
   {

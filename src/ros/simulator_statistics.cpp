@@ -1,5 +1,7 @@
 #include "vibro_impact/ros/simulator_statistics.h"
 
+#include <utility>
+
 namespace vibro_impact::graph
 {
 using diagnostic_msgs::DiagnosticStatus;
@@ -34,6 +36,7 @@ void SimulatorStatistics::count(const StreamSimulation::Answer& answer, double c
     ++totals_.restarts;
   }
   totals_.impacts += answer.impacts.size();
+  totals_.contact_changes += answer.contact_changes.size();
   totals_.switch_limits += answer.switch_limits;
   totals_.computing_time += computing_time;
 }
@@ -105,6 +108,7 @@ void SimulatorStatistics::report(std::optional<double> input_age, diagnostic_upd
   status.add("Restarts", totals_.restarts);
   status.add("Resets", totals_.resets);
   status.add("Impacts", totals_.impacts);
+  status.add("Contact changes", totals_.contact_changes);
   status.add("Switch limit reached", totals_.switch_limits);
   if (input_age)
   {
@@ -116,6 +120,25 @@ void SimulatorStatistics::report(std::optional<double> input_age, diagnostic_upd
   }
   status.add("Last refusal", last_refusal_.empty() ? "none" : last_refusal_);
   reported_ = totals_;
+}
+
+void report(const core::EnergyAccount& account, diagnostic_updater::DiagnosticStatusWrapper& status)
+{
+  const std::pair<const char*, double> entries[] = {
+      {"Energy at the start (J)", account.initial},
+      {"Energy in structure 1 (J)", account.structure1},
+      {"Energy in structure 2 (J)", account.structure2},
+      {"Energy in the spring (J)", account.spring},
+      {"Work of the base (J)", account.work},
+      {"Dissipated free (J)", account.dissipated_free},
+      {"Dissipated in contact (J)", account.dissipated_contact},
+      {"Lost by the mapping (J)", account.mapping_loss},
+      {"Energy account closes to", account.closure()},
+  };
+  for (const auto& [name, value] : entries)
+  {
+    status.addf(name, "%.9g", value);
+  }
 }
 
 }  // namespace vibro_impact::graph

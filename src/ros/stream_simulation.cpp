@@ -3,13 +3,31 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
+
+#include "text.h"
 
 namespace vibro_impact::graph
 {
 StreamSimulation::StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits)
     : model_(std::move(model)), rules_(limits)
 {
+}
+
+void StreamSimulation::setContact(std::shared_ptr<const core::SwitchedModel> model, std::uint64_t seq)
+{
+  if (rules_.started() && seq != 0 && seq < rules_.nextSeq())
+  {
+    throw std::invalid_argument(
+        text("seq: ", seq, " has been simulated; allowed: 0, the next sample, or at least ", rules_.nextSeq()));
+  }
+  if (waiting_.size() >= max_waiting_changes && waiting_.count(seq) == 0)
+  {
+    throw std::invalid_argument(
+        text("seq: ", seq, " would be one change too many that waits; allowed: ", max_waiting_changes, " of them"));
+  }
+  waiting_[seq] = std::move(model);
 }
 
 const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitation)
@@ -22,26 +40,37 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
     return answer_;
   }
 
+  bool changed = false;
   if (action == Verdict::Action::Start || action == Verdict::Action::Restart)
   {
     rest();  // an open episode is dated on the old stream
-    if (!simulation_ || simulation_->samplePeriod() != excitation.sample_period)
+    changed = takeContact(excitation.seq);
+    if (!simulation_ || changed || simulation_->samplePeriod() != excitation.sample_period)
     {
       simulation_.emplace(model_, excitation.sample_period);
     }
     first_seq_ = excitation.seq;
     carried_over_ = false;
+    if (observer_ != nullptr)
+    {
+      observer_->onStart(excitation.stamp, excitation.sample_period);
+    }
   }
 
   const std::uint64_t switch_limits = simulation_->switchLimitReached();
   const bool was_in_contact = simulation_->inContact();
   const std::size_t cut_short = answer_.impacts.size();
   const double last_sample = rules_.lastSample();
+  const std::uint64_t next = rules_.nextSeq();
   rules_.take(excitation, action, carried_over_);
+  if (changed)
+  {
+    noteContactChange(excitation.seq);
+  }
 
   if (action == Verdict::Action::Bridge)
   {
-    bridge(answer_.verdict.missing, last_sample, excitation.values.front());
+    bridge(next, answer_.verdict.missing, last_sample, excitation.values.front());
   }
   const std::size_t count = excitation.values.size();
   for (Samples* answer : {&answer_.gap, &answer_.force})
@@ -51,7 +80,8 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
     answer->sample_period = excitation.sample_period;
     answer->values.resize(count);
   }
-  simulation_->advance(excitation.values.data(), count, answer_.gap.values.data(), answer_.force.values.data(), *this);
+  advanceSamples(excitation.seq, excitation.values.data(), count, answer_.gap.values.data(),
+                 answer_.force.values.data());
 
   carried_over_ = was_in_contact && simulation_->inContact() && answer_.impacts.size() == cut_short;
   answer_.switch_limits = simulation_->switchLimitReached() - switch_limits;
@@ -75,15 +105,79 @@ void StreamSimulation::rest()
   }
 }
 
+core::EnergyAccount StreamSimulation::energyAccount() const
+{
+  return simulation_ ? simulation_->energyAccount() : core::EnergyAccount();
+}
+
 void StreamSimulation::onImpact(const core::Impact& impact)
 {
+  if (observer_ != nullptr)
+  {
+    observer_->onImpact(impact);
+  }
   StampedImpact stamped{impact, 0};
   stamped.impact.interval += first_seq_;
   stamped.stamp = rules_.clock().at(stamped.impact.interval) + std::llround(impact.offset * 1.0e9);
   answer_.impacts.push_back(stamped);
 }
 
-void StreamSimulation::bridge(std::uint64_t missing, double from, double to)
+/// Advances over samples of which the first has the number `seq`, and takes the changes of the contact on the way.
+void StreamSimulation::advanceSamples(std::uint64_t seq, const double* acceleration, std::size_t count, double* gap,
+                                      double* force)
+{
+  while (count > 0)
+  {
+    if (takeContact(seq))
+    {
+      simulation_->setModel(model_, *this);
+      noteContactChange(seq);
+    }
+    const std::size_t piece =
+        waiting_.empty() ? count
+                         : static_cast<std::size_t>(std::min<std::uint64_t>(count, waiting_.begin()->first - seq));
+    take(acceleration, piece, gap, force);
+    seq += piece;
+    acceleration += piece;
+    gap += piece;
+    force += piece;
+    count -= piece;
+  }
+}
+
+/// Whether another contact holds from sample `seq` on; then it is model_ from now on.
+bool StreamSimulation::takeContact(std::uint64_t seq)
+{
+  std::shared_ptr<const core::SwitchedModel> model = model_;
+  while (!waiting_.empty() && waiting_.begin()->first <= seq)
+  {
+    model = waiting_.begin()->second;
+    waiting_.erase(waiting_.begin());
+  }
+  std::swap(model, model_);
+  return model->stiffness() != model_->stiffness() || model->clearance() != model_->clearance();
+}
+
+void StreamSimulation::noteContactChange(std::uint64_t seq)
+{
+  answer_.contact_changes.push_back({seq, rules_.clock().at(seq), model_});
+}
+
+void StreamSimulation::take(const double* acceleration, std::size_t count, double* gap, double* force)
+{
+  if (observer_ == nullptr)
+  {
+    simulation_->advance(acceleration, count, gap, force, *this);
+    return;
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    simulation_->advance(acceleration + i, 1, gap + i, force + i, *this);
+    observer_->onSample(simulation_->sample());
+  }
+}
+
+void StreamSimulation::bridge(std::uint64_t seq, std::uint64_t missing, double from, double to)
 {
   constexpr std::uint64_t chunk = 256;
   std::array<double, chunk> acceleration;
@@ -97,7 +191,7 @@ void StreamSimulation::bridge(std::uint64_t missing, double from, double to)
     {
       acceleration[i] = from + slope * static_cast<double>(first + i + 1);
     }
-    simulation_->advance(acceleration.data(), count, gap.data(), force.data(), *this);
+    advanceSamples(seq + first, acceleration.data(), count, gap.data(), force.data());
   }
 }
 
@@ -107,6 +201,7 @@ void StreamSimulation::clearAnswer()
   answer_.gap.values.clear();
   answer_.force.values.clear();
   answer_.impacts.clear();
+  answer_.contact_changes.clear();
   answer_.switch_limits = 0;
 }
 

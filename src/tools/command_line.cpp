@@ -37,16 +37,30 @@ po::typed_value<std::string>* text(const char* name)
   return po::value<std::string>()->value_name(name);
 }
 
-double number(const Given& given, const std::string& option, double least, double greatest)
+std::string onlyFile(const Given& given, const std::string& positional, const std::string& what)
 {
-  const std::string text = given[option].as<std::string>();
+  const std::size_t files = given[positional].empty() ? 0 : given[positional].as<std::vector<std::string>>().size();
+  if (files != 1)
+  {
+    throw UsageError(std::to_string(files) + " " + what + "s are given: must be one");
+  }
+  return given[positional].as<std::vector<std::string>>().front();
+}
+
+double number(const std::string& name, const std::string& text, double least, double greatest)
+{
   const auto value = config::parseNumber(text);
   if (!value || *value < least || *value > greatest)
   {
-    throw UsageError("--" + option + " = \"" + text + "\": must be a number from " + config::formatNumber(least) +
-                     " to " + config::formatNumber(greatest));
+    throw UsageError(name + " = \"" + text + "\": must be a number from " + config::formatNumber(least) + " to " +
+                     config::formatNumber(greatest));
   }
   return *value;
+}
+
+double number(const Given& given, const std::string& option, double least, double greatest)
+{
+  return number("--" + option, given[option].as<std::string>(), least, greatest);
 }
 
 std::int64_t wholeNumber(const Given& given, const std::string& option, std::int64_t least, std::int64_t greatest)

@@ -21,6 +21,13 @@ using Given = boost::program_options::variables_map;
 /// An option's value, taken as text and called `name` in the help.
 boost::program_options::typed_value<std::string>* text(const char* name);
 
+/// The one argument that must be given besides the options, under the name `positional`. Throws UsageError, which calls
+/// it `what`, if there is none or there are several.
+std::string onlyFile(const Given& given, const std::string& positional, const std::string& what);
+
+/// The number that `text`, the value of what the message calls `name`, must be. Throws UsageError if it is no such
+/// number.
+double number(const std::string& name, const std::string& text, double least, double greatest);
 /// The value of an option that has one. Throws UsageError if it is no such number.
 double number(const Given& given, const std::string& option, double least, double greatest);
 std::int64_t wholeNumber(const Given& given, const std::string& option, std::int64_t least, std::int64_t greatest);

@@ -11,6 +11,7 @@
 #include <console_bridge/console.h>
 
 #include "command_line.h"
+#include "vibro_impact/config/number.h"
 #include "vibro_impact/config/output_directory.h"
 #include "vibro_impact/config/response_table.h"
 #include "vibro_impact/ros/recorded_run.h"
@@ -93,6 +94,33 @@ private:
   int last_ = 0;
 };
 
+/// Which rows of the table belong to which contact.
+void reportContacts(const std::vector<graph::ContactSpan>& contacts)
+{
+  if (contacts.size() == 1)
+  {
+    return;
+  }
+  std::cout << "the contact changed " << contacts.size() - 1 << (contacts.size() == 2 ? " time" : " times")
+            << " during the recording:\n";
+  std::size_t row = 1;
+  for (const graph::ContactSpan& span : contacts)
+  {
+    std::cout << "  from seq " << span.from.seq << ": stiffness " << config::formatNumber(span.from.contact.stiffness)
+              << " N/m, clearance " << config::formatNumber(span.from.contact.clearance) << " m: ";
+    if (span.responses == 0)
+    {
+      std::cout << "no step\n";
+    }
+    else
+    {
+      std::cout << (span.responses == 1 ? "row " : "rows ") << row;
+      std::cout << (span.responses == 1 ? "" : " to " + std::to_string(row + span.responses - 1)) << " of frf.csv\n";
+    }
+    row += span.responses;
+  }
+}
+
 void report(const graph::Extraction& extraction, const std::string& out)
 {
   constexpr std::size_t shown = 10;
@@ -119,6 +147,7 @@ void report(const graph::Extraction& extraction, const std::string& out)
   {
     std::cout << "the simulation restarted from rest " << recording.restarts << " times\n";
   }
+  reportContacts(extraction.contacts);
   const auto& responses = extraction.responses;
   const auto [lowest, highest] = std::minmax_element(responses.begin(), responses.end(),
                                                      [](const core::Response& a, const core::Response& b)

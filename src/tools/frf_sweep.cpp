@@ -72,14 +72,8 @@ Arguments interpret(const tools::Given& given)
       throw tools::UsageError("--" + std::string(option) + " is missing");
     }
   }
-  const std::size_t files =
-      given["configuration"].empty() ? 0 : given["configuration"].as<std::vector<std::string>>().size();
-  if (files != 1)
-  {
-    throw tools::UsageError(std::to_string(files) + " configuration files are given: must be one");
-  }
   Arguments arguments;
-  arguments.configuration = given["configuration"].as<std::vector<std::string>>().front();
+  arguments.configuration = tools::onlyFile(given, "configuration", "configuration file");
   arguments.out = given["out"].as<std::string>();
   config::SweepOptions& sweep = arguments.sweep;
   sweep.from = tools::number(given, "from", 1.0e-3, 1.0e5);
@@ -144,6 +138,19 @@ void report(const config::ModelSummary& model, const std::vector<core::Response>
                                      { return a.row.impulse_mean < b.row.impulse_mean; });
   const auto steady = std::count_if(responses.begin(), responses.end(),
                                     [](const core::Response& response) { return response.row.steady; });
+  const auto count = [&responses](auto condition)
+  {
+    return std::count_if(responses.begin(), responses.end(),
+                         [&](const core::Response& response) { return condition(response.row); });
+  };
+  const auto quiet = count([](const core::ResponseRow& row) { return row.impacts == 0; });
+  const auto pressed = count([](const core::ResponseRow& row) { return row.impacts == 0 && row.contact_share == 1.0; });
+  const auto apart = count([](const core::ResponseRow& row) { return row.impacts == 0 && row.contact_share == 0.0; });
+  if (quiet > 0)
+  {
+    std::cout << "no impacts: " << quiet << " of " << responses.size() << " frequencies (always in contact " << pressed
+              << ", never " << apart << ")\n";
+  }
   std::cout << "greatest mean impulse: " << std::setprecision(6) << peak->row.impulse_mean << " N s (I* "
             << peak->row.impulse_star_mean << ") at omega* " << peak->row.omega_star << ", period " << peak->row.period
             << "\nsteady: " << steady << " of " << responses.size() << " frequencies\nwritten to " << out

@@ -39,6 +39,10 @@ basis:
   modes_contact: 4
 )";
 
+const std::string kinds =
+    "a map of youngs_modulus, density, length, height, width, contact_location, rectangle, tube, section, ends, "
+    "rigid_body, or of modal_table, or the word rigid";
+
 /// The text with the first `from` replaced.
 std::string with(const std::string& from, const std::string& to, std::string text = good)
 {
@@ -73,25 +77,72 @@ std::string fileComplaint(const std::string& path)
   return "";
 }
 
-std::string beamText(const core::BeamParameters& value)
+std::string text(const std::vector<double>& numbers)
 {
-  std::string text;
-  for (const double number :
-       {value.youngs_modulus, value.density, value.length, value.height, value.width, value.contact_location})
+  std::string all;
+  for (const double number : numbers)
   {
-    text += formatNumber(number) + " ";
+    all += formatNumber(number) + " ";
   }
-  return text;
+  return all;
+}
+
+// Every member of a structure.
+
+std::string text(const core::BeamParameters& value)
+{
+  std::vector<double> numbers = {value.youngs_modulus,
+                                 value.density,
+                                 value.length,
+                                 value.contact_location,
+                                 static_cast<double>(value.ends[0]),
+                                 static_cast<double>(value.ends[1])};
+  const struct
+  {
+    std::vector<double> operator()(const core::Rectangle& section) const
+    {
+      return {0.0, section.height, section.width};
+    }
+    std::vector<double> operator()(const core::Tube& section) const
+    {
+      return {1.0, section.outer_diameter, section.wall_thickness, section.added_mass_per_length};
+    }
+    std::vector<double> operator()(const core::Section& section) const
+    {
+      return {2.0, section.bending_stiffness, section.mass_per_length};
+    }
+  } members;
+  const std::vector<double> section = std::visit(members, value.cross_section);
+  numbers.insert(numbers.end(), section.begin(), section.end());
+  if (value.rigid_body)
+  {
+    numbers.insert(numbers.end(),
+                   {3.0, value.rigid_body->length, value.rigid_body->mass, value.rigid_body->rotary_inertia});
+  }
+  return "beam " + text(numbers);
+}
+
+std::string text(const core::RigidSurface& /*surface*/)
+{
+  return "rigid";
+}
+
+std::string text(const core::ModalTableParameters& table)
+{
+  return "table " + text(table.frequency_hz) + "| " + text(table.contact_deflection) + "| " +
+         text(table.participation) + "| " + text(table.damping_ratio) + "| " +
+         (table.static_receptance ? formatNumber(*table.static_receptance) : "none");
+}
+
+std::string text(const core::StructureParameters& structure)
+{
+  return std::visit([](const auto& kind) { return text(kind); }, structure);
 }
 
 void expectSame(const core::SystemParameters& a, const core::SystemParameters& b)
 {
-  EXPECT_EQ(beamText(a.beam1), beamText(b.beam1));
-  ASSERT_EQ(a.beam2.index(), b.beam2.index());
-  if (const auto* beam2 = std::get_if<core::BeamParameters>(&a.beam2))
-  {
-    EXPECT_EQ(beamText(*beam2), beamText(std::get<core::BeamParameters>(b.beam2)));
-  }
+  EXPECT_EQ(text(a.beam1), text(b.beam1));
+  EXPECT_EQ(text(a.beam2), text(b.beam2));
   EXPECT_EQ(a.contact.stiffness, b.contact.stiffness);
   EXPECT_EQ(a.contact.clearance, b.contact.clearance);
   EXPECT_EQ(a.damping.free, b.damping.free);
@@ -112,12 +163,13 @@ void expectSame(const core::SystemParameters& a, const core::SystemParameters& b
 TEST(Configuration, ReadsEveryKey)
 {
   const core::SystemParameters parameters = parse(good, "my.yaml");
-  EXPECT_EQ(parameters.beam1.youngs_modulus, 1.66e9);
-  EXPECT_EQ(parameters.beam1.density, 954.0);
-  EXPECT_EQ(parameters.beam1.length, 0.0529);
-  EXPECT_EQ(parameters.beam1.height, 0.00127);
-  EXPECT_EQ(parameters.beam1.width, 0.0127);
-  EXPECT_EQ(parameters.beam1.contact_location, 0.02645);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.beam1).youngs_modulus, 1.66e9);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.beam1).density, 954.0);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.beam1).length, 0.0529);
+  const auto& section = std::get<core::Rectangle>(std::get<core::BeamParameters>(parameters.beam1).cross_section);
+  EXPECT_EQ(section.height, 0.00127);
+  EXPECT_EQ(section.width, 0.0127);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.beam1).contact_location, 0.02645);
   EXPECT_EQ(std::get<core::BeamParameters>(parameters.beam2).youngs_modulus, 1.66e9);
   EXPECT_EQ(parameters.contact.stiffness, 24309.5);
   EXPECT_EQ(parameters.contact.clearance, -1.0e-6);
@@ -146,7 +198,8 @@ TEST(Configuration, TakesATextThatIsWhollyANumber)
 {
   for (const std::string text : {"1.66e9", "\"1660000000\"", "'1.66e+9'", "+1.66e9", "1660000000", "!!str 1.66e9"})
   {
-    EXPECT_EQ(parse(with("1.66e+9", text), "my.yaml").beam1.youngs_modulus, 1.66e9) << text;
+    EXPECT_EQ(std::get<core::BeamParameters>(parse(with("1.66e+9", text), "my.yaml").beam1).youngs_modulus, 1.66e9)
+        << text;
   }
   EXPECT_EQ(parse(with("modes_free: 3", "modes_free: '3'"), "my.yaml").basis.index(), 0u);
 }
@@ -208,12 +261,10 @@ TEST(Configuration, NamesEveryMissingKey)
               HasSubstr("basis.modes_contact is missing: must be a whole"));
   EXPECT_EQ(complaint(with("  type: conjoined\n", "")),
             "my.yaml: basis.type is missing: must be conjoined or attachment");
-  EXPECT_EQ(
-      complaint(with("beam1:" + beam, "")),
-      "my.yaml: beam1 is missing: must be a map of youngs_modulus, density, length, height, width, contact_location");
-  EXPECT_EQ(
-      complaint(with("beam2:" + beam, "")),
-      "my.yaml: beam2 is missing: must be a map of youngs_modulus, density, length, height, width, contact_location");
+  for (const std::string name : {"beam1", "beam2"})
+  {
+    EXPECT_EQ(complaint(with(name + ":" + beam, "")), "my.yaml: " + name + " is missing: must be " + kinds);
+  }
   EXPECT_EQ(complaint(good.substr(0, good.find("basis:")) + "basis:\n"),
             "my.yaml: basis is empty: must be a map of type, modes_free, modes_contact, modes_per_beam");
 }
@@ -249,11 +300,8 @@ TEST(Configuration, RefusesAKeyGivenTwice)
 
 TEST(Configuration, RefusesWrongSections)
 {
-  EXPECT_EQ(complaint(with("beam1:" + beam, "beam1: rigid\n")),
-            "my.yaml: beam1 = \"rigid\": must be a map of youngs_modulus, density, length, height, width, "
-            "contact_location");
-  EXPECT_EQ(complaint(with("beam2:" + beam, "beam2: rigit\n")),
-            "my.yaml: beam2 = \"rigit\": must be a map as beam1, or the word rigid");
+  EXPECT_EQ(complaint(with("beam2:" + beam, "beam2: rigit\n")), "my.yaml: beam2 = \"rigit\": must be " + kinds);
+  EXPECT_EQ(complaint(with("beam1:" + beam, "beam1: [1]\n")), "my.yaml: beam1 is a list: must be " + kinds);
   EXPECT_THAT(complaint(with("type: conjoined", "type: joined")),
               HasSubstr("basis.type = \"joined\": must be conjoined or attachment"));
   EXPECT_THAT(complaint(with("type: conjoined", "type: [conjoined]")), HasSubstr("basis.type is a list: must be"));
@@ -340,28 +388,73 @@ TEST(Configuration, WritesWhatItReads)
   std::uniform_real_distribution<double> fraction(0.01, 0.99);
   for (int round = 0; round < 200; ++round)
   {
+    const auto some_table = [&]
+    {
+      core::ModalTableParameters table;
+      for (int m = 0; m < 1 + round % 4; ++m)
+      {
+        table.frequency_hz.push_back(1.0e3 * m * fraction(random) + (m > 0 ? 1.0 : 0.0));
+        table.contact_deflection.push_back(fraction(random) - 2.0);
+        table.participation.push_back(fraction(random) - 0.5);
+        if (round % 5 < 2)
+        {
+          table.damping_ratio.push_back(fraction(random));
+        }
+      }
+      if (round % 4 > 0)
+      {
+        table.static_receptance = 1.0 + fraction(random);
+      }
+      return table;
+    };
     const auto some_beam = [&]
     {
       core::BeamParameters value;
       value.youngs_modulus = std::pow(10.0, 9.0 + 3.0 * fraction(random));
       value.density = 1.0e4 * fraction(random);
       value.length = 0.1 + fraction(random);
-      value.height = 0.01 + 0.01 * fraction(random);
-      value.width = 0.01 * fraction(random);
+      switch (round % 7)
+      {
+        case 0:
+          value.cross_section = core::Tube{0.01 + 0.01 * fraction(random), 0.005 * fraction(random), fraction(random)};
+          break;
+        case 1:
+          value.cross_section = core::Section{fraction(random), fraction(random)};
+          value.youngs_modulus = value.density = 0.0;
+          break;
+        default:
+          value.cross_section = core::Rectangle{0.01 + 0.01 * fraction(random), 0.01 * fraction(random)};
+      }
       value.contact_location = value.length * fraction(random);
+      value.ends = {static_cast<core::End>(random() % 3), static_cast<core::End>(random() % 3)};
+      if (round % 3 == 1)
+      {
+        value.rigid_body = core::RigidBody{0.1 * fraction(random), fraction(random) * core::massPerLength(value),
+                                           1.0e-3 * core::massPerLength(value) * fraction(random)};
+        value.contact_location = 0.5 * value.length;
+      }
       return value;
     };
     core::SystemParameters parameters;
     parameters.beam1 = some_beam();
-    if (round % 3 == 0)
+    if (round % 11 == 3)
+    {
+      parameters.beam1 = core::RigidSurface{};
+      parameters.beam2 = some_beam();
+    }
+    else if (round % 3 == 0)
     {
       parameters.beam2 = core::RigidSurface{};
+    }
+    else if (round % 3 == 1)
+    {
+      parameters.beam2 = some_table();
     }
     else
     {
       parameters.beam2 = some_beam();
     }
-    parameters.contact.stiffness = fraction(random) * core::referenceScales(parameters.beam1).stiffness;
+    parameters.contact.stiffness = fraction(random) * core::referenceScales(parameters).stiffness;
     parameters.contact.clearance = 1.0e-3 * (fraction(random) - 0.5);
     parameters.damping = {fraction(random), 0.0};
     if (round % 2 == 0)
@@ -383,13 +476,171 @@ TEST(Configuration, ShippedFilesAreTheOnesOfTheirNames)
 {
   const std::string folder = CONFIG_DIRECTORY;
   const auto ratio = [](const core::SystemParameters& parameters)
-  { return 48.0 * parameters.contact.stiffness / core::referenceScales(parameters.beam1).stiffness; };
+  { return 48.0 * parameters.contact.stiffness / core::referenceScales(parameters).stiffness; };
   const core::SystemParameters limiting = loadFile(folder + "/limiting_case.yaml");
   EXPECT_NEAR(ratio(limiting), 1000.0, 1.0e-6);
-  EXPECT_NEAR(core::referenceScales(limiting.beam1).frequency, 1705.6, 0.05);
+  EXPECT_NEAR(core::referenceScales(limiting).frequency, 1705.6, 0.05);
   const core::SystemParameters table1 = loadFile(folder + "/table1.yaml");
   EXPECT_NEAR(ratio(table1), 73223.0, 1.0);
-  EXPECT_EQ(table1.beam1.contact_location, 0.0265);
+  EXPECT_EQ(std::get<core::BeamParameters>(table1.beam1).contact_location, 0.0265);
+}
+
+/// The configuration with this in place of beam 1.
+std::string withBeam1(const std::string& lines)
+{
+  return with("beam1:" + beam, "beam1:\n" + lines);
+}
+
+TEST(Configuration, ReadsEveryKindOfStructure)
+{
+  const auto structure = [](const std::string& lines) { return text(parse(withBeam1(lines), "my.yaml").beam1); };
+  const std::string material = "  youngs_modulus: 2.0e+11\n  density: 7800\n  length: 2\n  contact_location: 1\n";
+  EXPECT_EQ(structure(material + "  rectangle: {height: 0.01, width: 0.02}\n"),
+            "beam 200000000000 7800 2 1 0 0 0 0.01 0.02 ");
+  EXPECT_EQ(structure(material + "  height: 0.01\n  width: 0.02\n  ends: [clamped, free]\n"),
+            "beam 200000000000 7800 2 1 1 2 0 0.01 0.02 ");
+  EXPECT_EQ(structure(material + "  tube: {outer_diameter: 0.02, wall_thickness: 0.001}\n"),
+            "beam 200000000000 7800 2 1 0 0 1 0.02 0.001 0 ");
+  EXPECT_EQ(structure(material + "  tube: {outer_diameter: 0.02, wall_thickness: 0.001, added_mass_per_length: 0.5}\n"),
+            "beam 200000000000 7800 2 1 0 0 1 0.02 0.001 0.5 ");
+  const std::string section =
+      "  length: 2\n  contact_location: 1\n  section: {bending_stiffness: 12.5, mass_per_length: 0.4}\n";
+  EXPECT_EQ(structure(section), "beam 0 0 2 1 0 0 2 12.5 0.4 ");
+  EXPECT_EQ(structure(section + "  ends: [free, pinned]\n  rigid_body: {length: 0.1, mass: 3, rotary_inertia: 0}\n"),
+            "beam 0 0 2 1 2 0 2 12.5 0.4 3 0.1 3 0 ");
+  EXPECT_EQ(
+      structure("  modal_table: {frequency_hz: [0, 12.5], contact_deflection: [1, -2], participation: [0.5, 0]}\n"),
+      "table 0 12.5 | 1 -2 | 0.5 0 | | none");
+  EXPECT_EQ(
+      structure("  modal_table:\n    frequency_hz: [10]\n    contact_deflection: ['1.5']\n    participation: [0.5]\n"
+                "    damping_ratio: [0.02]\n    static_receptance: 1\n"),
+      "table 10 | 1.5 | 0.5 | 0.02 | 1");
+  EXPECT_EQ(text(parse(with("beam1:" + beam, "beam1: rigid\n"), "my.yaml").beam1), "rigid");
+}
+
+TEST(Configuration, SaysWhatIsWrongWithAStructure)
+{
+  const std::string material = "  youngs_modulus: 2.0e+11\n  density: 7800\n  length: 2\n  contact_location: 1\n";
+  const std::string rectangle = material + "  rectangle: {height: 0.01, width: 0.02}\n";
+  const std::string table =
+      "  modal_table: {frequency_hz: [10, 20], contact_deflection: [1, 2], participation: [0, 1]}\n";
+  const auto fault = [](const std::string& lines) { return complaint(withBeam1(lines)); };
+  ASSERT_EQ(fault(rectangle), "");
+  ASSERT_EQ(fault(table), "");
+
+  EXPECT_EQ(fault(with("0.02", "-1", rectangle)),
+            "my.yaml: beam1.rectangle.width = -1: must be a finite number > 0 (m)");
+  EXPECT_EQ(fault(rectangle + "  tube: {outer_diameter: 1, wall_thickness: 0.1}\n"),
+            "my.yaml: beam1 has rectangle, tube: must be with one cross-section: height and width, rectangle, tube or "
+            "section");
+  EXPECT_EQ(fault(material + "  tube: {outer_diameter: 1, wall_thickness: 0.6}\n"),
+            "my.yaml: beam1.tube.wall_thickness = 0.6: must be at most half the outer diameter, 0.5 (m)");
+  EXPECT_EQ(fault(material + "  tube: {outer_diameter: 1}\n"),
+            "my.yaml: beam1.tube.wall_thickness is missing: must be a finite number > 0 (m)");
+  EXPECT_THAT(fault(material + "  section: {bending_stiffness: 1, mass_per_length: 1}\n"),
+              HasSubstr("beam1.youngs_modulus = 2.0e+11: must be left out where the section says it all"));
+  EXPECT_EQ(fault(rectangle + "  ends: [clamped, fre]\n"),
+            "my.yaml: beam1.ends = \"[clamped, fre]\": must be a list of two of pinned, clamped, free");
+  EXPECT_EQ(fault(rectangle + "  ends: clamped\n"),
+            "my.yaml: beam1.ends = \"clamped\": must be a list of two of pinned, clamped, free");
+  EXPECT_EQ(fault(rectangle + "  rigid_body: {length: 2.5, mass: 1, rotary_inertia: 0}\n"),
+            "my.yaml: beam1.rigid_body.length = 2.5: must be a number >= 0 and <= 1.998, which is 0.999 of the beam's "
+            "length (m)");
+  EXPECT_EQ(fault(with("contact_location: 1", "contact_location: 1.2",
+                       rectangle + "  rigid_body: {length: 0.2, mass: 1, rotary_inertia: 0}\n")),
+            "my.yaml: beam1.contact_location = 1.2: must be on the rigid body, from 0.9 to 1.1 (m)");
+  EXPECT_EQ(fault(with("contact_location: 1", "contact_location: 2.5", rectangle)),
+            "my.yaml: beam1.contact_location = 2.5: must be a number > 0 and < 2, the length (m), no nearer to either "
+            "than 1e-06 of it");
+  EXPECT_EQ(
+      fault(with("contact_location: 1", "contact_location: 2.5", rectangle + "  ends: [clamped, free]\n")),
+      "my.yaml: beam1.contact_location = 2.5: must be a number > 0 and <= 2, the length (m), no nearer to the first "
+      "end than 0.001 of it");
+  EXPECT_THAT(complaint(with("beam2:" + beam, "beam2: rigid\n", with("beam1:" + beam, "beam1: rigid\n"))),
+              HasSubstr("beam2 = rigid: must be a beam or a modal table where beam1 is rigid"));
+
+  EXPECT_EQ(fault(with("[10, 20]", "[10, -20]", table)),
+            "my.yaml: beam1.modal_table.frequency_hz[2] = -20: must be 0, for a rigid-body mode, or from 1e-60 to "
+            "1e+60 (Hz)");
+  EXPECT_EQ(fault(with("[1, 2]", "[1, two]", table)),
+            "my.yaml: beam1.modal_table.contact_deflection[2] = \"two\": must be 0 or of a size from 1e-60 to 1e+60 "
+            "(kg^-1/2)");
+  EXPECT_EQ(fault(with("[1, 2]", "[0, 0]", table)),
+            "my.yaml: beam1.modal_table.contact_deflection = 0 in every mode: must be other than 0 in at least one: no "
+            "mode moves the contact point");
+  EXPECT_EQ(fault(with("[1, 2]", "[1]", table)),
+            "my.yaml: beam1.modal_table.contact_deflection: number of values = 1: must be 2, as many as frequencies");
+  EXPECT_EQ(
+      fault(with(", participation: [0, 1]", "", table)),
+      "my.yaml: beam1.modal_table.participation is missing: must be a list of numbers, or file in place of all lists");
+  EXPECT_EQ(
+      fault(with("}", ", static_receptance: 1.0e-9}", table)),
+      "my.yaml: beam1.modal_table.static_receptance = 1.0e-9: must be a number >= 0.000506605918211689 (m/N), which "
+      "its modes have by themselves");
+  EXPECT_EQ(
+      fault(with("}", ", damping_ratio: [0, 1]}", table)),
+      "my.yaml: beam1.modal_table.damping_ratio[2] = 1: must be a number >= 0 and < 1 (ratio of critical damping)");
+  EXPECT_EQ(fault(table + rectangle),
+            "my.yaml: 5 faults\n  beam1.\"youngs_modulus\" is unknown: must be one of modal_table\n"
+            "  beam1.\"density\" is unknown: must be one of modal_table\n"
+            "  beam1.\"length\" is unknown: must be one of modal_table\n"
+            "  beam1.\"contact_location\" is unknown: must be one of modal_table\n"
+            "  beam1.\"rectangle\" is unknown: must be one of modal_table");
+}
+
+TEST(Configuration, ReadsAModalTableFromAFileBesideIt)
+{
+  const TemporaryDirectory directory;
+  const std::string csv = directory.file("table.csv",
+                                         "\xEF\xBB\xBF# by hand\r\nmode, participation "
+                                         ",contact_deflection,frequency_hz\r\n1, 0.5, 1.5,0\r\n\r\n2,0,-2,12.5\r\n");
+  const std::string yaml = withBeam1("  modal_table: {file: table.csv, static_receptance: 1}\n");
+  const std::string path = directory.file("my.yaml", yaml);
+  const core::SystemParameters parameters = loadFile(path);
+  EXPECT_EQ(text(parameters.beam1), "table 0 12.5 | 1.5 -2 | 0.5 0 | | 1");
+  const std::string absolute = with("table.csv", csv, yaml);
+  expectSame(parse(absolute, "my.yaml"), parameters);
+  EXPECT_EQ(toYaml(parameters).find(".csv"), std::string::npos) << "the text needs no other file";
+  expectSame(parse(toYaml(parameters), "again"), parameters);
+
+  EXPECT_EQ(
+      complaint(yaml),
+      "my.yaml: beam1.modal_table.file = \"table.csv\": must be an absolute path: nothing says which folder it is "
+      "relative to");
+  EXPECT_THAT(complaint(with("static_receptance", "frequency_hz: [1], static_receptance", absolute)),
+              HasSubstr("beam1.modal_table.frequency_hz is a list: must be left out where a file is given"));
+  EXPECT_EQ(complaint(withBeam1("  modal_table: {file: }\n")),
+            "my.yaml: beam1.modal_table.file is empty: must be the path of a CSV file");
+
+  const auto fault = [&](const std::string& content)
+  {
+    directory.file("table.csv", content);
+    return complaint(absolute);
+  };
+  const std::string place = "my.yaml: beam1.modal_table.file: " + csv + ": ";
+  const std::string header = "frequency_hz,contact_deflection,participation\n";
+  EXPECT_EQ(fault("frequency_hz,participation\n1,1\n"),
+            place +
+                "line 1: columns are missing: contact_deflection: must have frequency_hz, contact_deflection, "
+                "participation and may have damping_ratio");
+  EXPECT_EQ(fault("frequency_hz,contact_deflection,participation,damping_ration\n1,1,1,1\n"),
+            place + "line 1: column \"damping_ration\" is unknown: did you mean damping_ratio?");
+  EXPECT_EQ(fault("frequency_hz,contact_deflection,participation,frequency_hz\n1,1,1,1\n"),
+            place + "line 1: column frequency_hz is there more than once");
+  EXPECT_EQ(fault(header + "1,1\n"), place + "line 2: has 2 columns: must have 3, as the first line");
+  EXPECT_EQ(fault(header + "1,1,nan\n"), place + "line 2: column participation = \"nan\": must be a finite number");
+  EXPECT_EQ(fault(header),
+            place + "holds no modes: must be a line with the names of the columns, then one line a mode");
+  EXPECT_EQ(fault(""), place + "holds no modes: must be a line with the names of the columns, then one line a mode");
+  EXPECT_EQ(fault(header + "1,1,0\n-5,1,1\n"),
+            "my.yaml: beam1.modal_table.frequency_hz[2] of " + csv +
+                " = -5: must be 0, for a rigid-body mode, or from 1e-60 to 1e+60 (Hz)");
+  EXPECT_EQ(fault(header + "1,0,0\n5,0,1\n"),
+            "my.yaml: beam1.modal_table.contact_deflection of " + csv +
+                " = 0 in every mode: must be other than 0 in at least one: no mode moves the contact point");
+  EXPECT_EQ(complaint(with("table.csv", "nowhere.csv", absolute)),
+            "my.yaml: beam1.modal_table.file: " + with("table.csv", "nowhere.csv", csv) +
+                ": cannot be read: No such file or directory");
 }
 
 TEST(Number, ReadsBackExactly)

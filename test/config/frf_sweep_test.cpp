@@ -7,12 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "temporary_directory.h"
+#include "tool_test.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/number.h"
 #include "vibro_impact/config/response_table.h"
@@ -21,45 +20,15 @@ namespace vibro_impact::config
 {
 namespace
 {
-using testing::AllOf;
 using testing::HasSubstr;
-using testing::StartsWith;
 
 const std::string limiting_case = std::string(CONFIG_DIRECTORY) + "/limiting_case.yaml";
 
-struct Outcome
-{
-  int status = -1;
-  std::string out;
-  std::string error;
-};
-
-class FrfSweep : public testing::Test
+class FrfSweep : public ToolTest
 {
 protected:
-  Outcome run(const std::string& arguments) const
+  FrfSweep() : ToolTest(FRF_SWEEP, "frf_sweep")
   {
-    const std::string out = directory_.path() + "/stdout";
-    const std::string error = directory_.path() + "/stderr";
-    const std::string command = std::string(FRF_SWEEP) + " " + arguments + " >" + out + " 2>" + error + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readText(out), readText(error)};
-  }
-
-  std::string results(const std::string& name = "results") const
-  {
-    return directory_.path() + "/" + name;
-  }
-
-  /// Expects a refusal with one line that holds `reason`, and no results.
-  void expectRefusal(const std::string& arguments, int status, const std::string& reason) const
-  {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.status, status) << arguments;
-    EXPECT_EQ(outcome.out, "") << arguments;
-    EXPECT_THAT(outcome.error, AllOf(StartsWith("frf_sweep: "), HasSubstr(reason))) << arguments;
-    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
-    EXPECT_FALSE(std::filesystem::exists(results())) << arguments;
   }
 
   /// The value of a key of model.csv.
@@ -75,8 +44,6 @@ protected:
     const std::size_t begin = at + key.size() + 2;
     return parseNumber(text.substr(begin, text.find('\n', begin) - begin)).value_or(0.0);
   }
-
-  TemporaryDirectory directory_;
 };
 
 TEST_F(FrfSweep, WritesTheTables)
@@ -106,6 +73,42 @@ TEST_F(FrfSweep, WritesTheTables)
   }
   EXPECT_EQ(readImpactTable(results() + "/impacts.csv").size(), static_cast<std::size_t>(impacts));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(results()), {}), 3);
+}
+
+TEST_F(FrfSweep, SaysWhereThereAreNoImpactsAndWhy)
+{
+  const std::string pressed = std::string(CONFIG_DIRECTORY) + "/interference_fit.yaml";
+  const std::string arguments = " --from 0.8 --to 1.6 --points 2 --cycles 200 --acceleration 0.2 --out ";
+  Outcome outcome = run(pressed + arguments + results());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("no impacts: 1 of 2 frequencies (always in contact 1, never 0)\n"));
+  std::vector<core::ResponseRow> rows = readResponseTable(results() + "/frf.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].impacts, 0);
+  EXPECT_EQ(rows[0].contact_share, 1.0);
+  EXPECT_EQ(rows[0].impulse_mean, 0.0);
+  EXPECT_EQ(rows[1].impacts, 15);
+  EXPECT_GT(rows[1].contact_share, 0.2);
+  EXPECT_LT(rows[1].contact_share, 0.8);
+  EXPECT_EQ(rows[1].clearance, -1.0e-7);
+  EXPECT_EQ(readImpactTable(results() + "/impacts.csv").size(), 15u);
+
+  core::SystemParameters parameters = loadFile(pressed);
+  parameters.contact.clearance = 1.0e-3;
+  const std::string open = directory_.file("open.yaml", toYaml(parameters));
+  outcome = run(open + arguments + results("open"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("no impacts: 2 of 2 frequencies (always in contact 0, never 2)\n"));
+  rows = readResponseTable(results("open") + "/frf.csv");
+  ASSERT_EQ(rows.size(), 2u);
+  for (const core::ResponseRow& row : rows)
+  {
+    EXPECT_EQ(row.impacts, 0);
+    EXPECT_EQ(row.contact_share, 0.0);
+    EXPECT_EQ(row.impulse_star_max, 0.0);
+    EXPECT_EQ(row.peak_force, 0.0);
+  }
+  EXPECT_TRUE(readImpactTable(results("open") + "/impacts.csv").empty());
 }
 
 TEST_F(FrfSweep, WritesTheFrequencyRatioOfTheModel)

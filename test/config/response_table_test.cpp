@@ -22,9 +22,11 @@ using testing::HasSubstr;
 
 const std::string response_header =
     "omega_star,frequency_hz,acceleration,period,steady,impacts,impacts_per_cycle,impulse_mean,impulse_min,impulse_max,"
-    "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean";
+    "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean,contact_share,"
+    "stiffness,clearance";
 const std::string impact_header =
-    "omega_star,number,onset_s,duration_s,impulse,peak_force,approach_speed,separation_speed";
+    "omega_star,number,onset_s,duration_s,impulse,peak_force,approach_speed,separation_speed,energy_lost,dissipated,"
+    "mapping_loss,base_work";
 
 std::vector<core::Response> someResponses()
 {
@@ -32,7 +34,8 @@ std::vector<core::Response> someResponses()
   quiet.row.omega_star = 0.5;
   quiet.row.period = 1;
   core::Response loud;
-  loud.row = {1.0 / 3.0, 90.5, 1.0, 2, true, 2, 1.0, 0.1, 0.05, 0.15, 1e-7, 2e-7, 3e-7, 0.1, 1.0e3, 0.7e-3};
+  loud.row = {1.0 / 3.0, 90.5, 1.0,  2,   true,  2,      1.0, 0.1,   0.05,   0.15,
+              1e-7,      2e-7, 3e-7, 0.1, 1.0e3, 0.7e-3, 0.4, 5.0e4, -1.0e-6};
   core::Impact impact;
   impact.number = 12345678901234;
   impact.duration = 0.7e-3;
@@ -40,6 +43,10 @@ std::vector<core::Response> someResponses()
   impact.peak_force = 1.0e3 / 7.0;
   impact.approach_speed = 0.25;
   impact.separation_speed = 0.2;
+  impact.energy_lost = 3e-6;
+  impact.dissipated = 1e-6;
+  impact.mapping_loss = 2e-6;
+  impact.base_work = -4e-6;
   loud.captured = {{1.25, impact}, {1.5, impact}};
   return {quiet, loud};
 }
@@ -70,15 +77,17 @@ TEST(ResponseTable, HasTheColumnsOfTheContract)
 {
   const std::vector<core::Response> responses = someResponses();
   EXPECT_EQ(responseTable(responses).name, "frf.csv");
-  EXPECT_EQ(responseTable(responses).text,
-            response_header +
-                "\n0.5,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0"
-                "\n0.3333333333333333,90.5,1,2,1,2,1,0.1,0.05,0.15,1e-07,2e-07,3e-07,0.1,1000,0.0007\n");
+  EXPECT_EQ(
+      responseTable(responses).text,
+      response_header +
+          "\n0.5,0,0,1,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0"
+          "\n0.3333333333333333,90.5,1,2,1,2,1,0.1,0.05,0.15,1e-07,2e-07,3e-07,0.1,1000,0.0007,0.4,50000,-1e-06\n");
   EXPECT_EQ(impactTable(responses).name, "impacts.csv");
-  EXPECT_EQ(impactTable(responses).text,
-            impact_header +
-                "\n0.3333333333333333,12345678901234,1.25,0.0007,0.1,142.85714285714286,0.25,0.2"
-                "\n0.3333333333333333,12345678901234,1.5,0.0007,0.1,142.85714285714286,0.25,0.2\n");
+  EXPECT_EQ(
+      impactTable(responses).text,
+      impact_header +
+          "\n0.3333333333333333,12345678901234,1.25,0.0007,0.1,142.85714285714286,0.25,0.2,3e-06,1e-06,2e-06,-4e-06"
+          "\n0.3333333333333333,12345678901234,1.5,0.0007,0.1,142.85714285714286,0.25,0.2,3e-06,1e-06,2e-06,-4e-06\n");
   EXPECT_EQ(responseTable({}).text, response_header + "\n");
 }
 
@@ -109,6 +118,9 @@ TEST(ResponseTable, ReadsBackExactly)
   EXPECT_EQ(row.impulse_per_cycle, expected.impulse_per_cycle);
   EXPECT_EQ(row.peak_force, expected.peak_force);
   EXPECT_EQ(row.duration_mean, expected.duration_mean);
+  EXPECT_EQ(row.contact_share, expected.contact_share);
+  EXPECT_EQ(row.stiffness, expected.stiffness);
+  EXPECT_EQ(row.clearance, expected.clearance);
   EXPECT_FALSE(rows[0].steady);
 
   const std::vector<ImpactRow> impacts = readImpactTable(output.path() + "/impacts.csv");
@@ -122,6 +134,10 @@ TEST(ResponseTable, ReadsBackExactly)
   EXPECT_EQ(impacts[1].peak_force, captured.impact.peak_force);
   EXPECT_EQ(impacts[1].approach_speed, captured.impact.approach_speed);
   EXPECT_EQ(impacts[1].separation_speed, captured.impact.separation_speed);
+  EXPECT_EQ(impacts[1].energy_lost, captured.impact.energy_lost);
+  EXPECT_EQ(impacts[1].dissipated, captured.impact.dissipated);
+  EXPECT_EQ(impacts[1].mapping_loss, captured.impact.mapping_loss);
+  EXPECT_EQ(impacts[1].base_work, captured.impact.base_work);
 }
 
 TEST(ResponseTable, FindsColumnsByName)
@@ -129,13 +145,15 @@ TEST(ResponseTable, FindsColumnsByName)
   const TemporaryDirectory directory;
   const std::string path = directory.file("impacts.csv",
                                           "note,number,omega_star,duration_s,onset_s,impulse,peak_force,approach_speed,"
-                                          "separation_speed\r\nfine,7,1.5,2,3,4,5,6,8\r\n");
+                                          "separation_speed,energy_lost,mapping_loss,dissipated,base_work\r\n"
+                                          "fine,7,1.5,2,3,4,5,6,8,9,10,11,12\r\n");
   const std::vector<ImpactRow> rows = readImpactTable(path);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].number, 7u);
   EXPECT_EQ(rows[0].omega_star, 1.5);
   EXPECT_EQ(rows[0].onset_s, 3.0);
   EXPECT_EQ(rows[0].separation_speed, 8.0);
+  EXPECT_EQ(rows[0].dissipated, 11.0);
 }
 
 TEST(ResponseTable, SaysWhatIsWrongAndWhere)
@@ -143,21 +161,21 @@ TEST(ResponseTable, SaysWhatIsWrongAndWhere)
   EXPECT_EQ(responseComplaint(""), ": is empty: must be a table that starts with the names of its columns");
   EXPECT_EQ(responseComplaint("omega_star,frequency_hz,acceleration,period,steady,impacts,impacts_per_cycle,"
                               "impulse_mean,impulse_min,impulse_max,impulse_star_mean,impulse_star_min,"
-                              "impulse_per_cycle,duration_mean\n"),
+                              "impulse_per_cycle,duration_mean,contact_share,stiffness,clearance\n"),
             ": line 1: columns are missing: impulse_star_max, peak_force");
   EXPECT_THAT(responseComplaint("hello\n"), HasSubstr(": line 1: columns are missing: omega_star, "));
-  const std::string row = "\n1,2,3,1,1,15,1,0,0,0,0,0,0,0,0,0";
-  EXPECT_EQ(responseComplaint(response_header + row + "\n1,2,3\n"), ": line 3: has 3 columns: must have 16");
-  EXPECT_EQ(responseComplaint(response_header + row + "\n\n"), ": line 3: has 1 columns: must have 16");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3x,1,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  const std::string row = "\n1,2,3,1,1,15,1,0,0,0,0,0,0,0,0,0,0.5,1,0";
+  EXPECT_EQ(responseComplaint(response_header + row + "\n1,2,3\n"), ": line 3: has 3 columns: must have 19");
+  EXPECT_EQ(responseComplaint(response_header + row + "\n\n"), ": line 3: has 1 columns: must have 19");
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3x,1,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column acceleration = \"3x\": must be a finite number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,nan,1,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,nan,1,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column acceleration = \"nan\": must be a finite number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1.5,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1.5,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column period = \"1.5\": must be a whole number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,-1,1,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,-1,1,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column period = \"-1\": must be a whole number");
-  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1,2,15,1,0,0,0,0,0,0,0,0,0\n"),
+  EXPECT_EQ(responseComplaint(response_header + "\n1,2,3,1,2,15,1,0,0,0,0,0,0,0,0,0,0,0,0\n"),
             ": line 2: column steady = \"2\": must be a whole number");
   const TemporaryDirectory directory;
   EXPECT_THAT(complaint([&] { readImpactTable(directory.path()); }), HasSubstr("it is a directory"));

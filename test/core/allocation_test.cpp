@@ -72,6 +72,29 @@ TEST(Allocations, noneInTheAdvanceUnderASampledDrive)
   }
 }
 
+TEST(Allocations, noneInTheAdvanceAfterAChangeOfTheContact)
+{
+  SystemParameters parameters = limitingCase(1000.0, AttachmentBasis{5});
+  SampledSimulation simulation(std::make_shared<const SwitchedModel>(parameters), 2e-5);
+  parameters.contact = {0.7 * parameters.contact.stiffness, -1.0e-7};
+  const auto worn = std::make_shared<const SwitchedModel>(parameters);
+  std::vector<double> drive(20000);
+  for (std::size_t i = 0; i < drive.size(); ++i)
+  {
+    drive[i] = 10.0 * std::sin(1.6 * worn->scales().frequency * 2e-5 * static_cast<double>(i));
+  }
+  std::vector<double> gap(drive.size());
+  std::vector<double> force(drive.size());
+  Counter counter;
+  simulation.advance(drive.data(), 500, gap.data(), force.data(), counter);
+  simulation.setModel(worn, counter);
+  const std::size_t before = allocations;
+  simulation.advance(drive.data() + 500, drive.size() - 500, gap.data(), force.data(), counter);
+  const std::size_t after = allocations;
+  EXPECT_EQ(after - before, 0u);
+  EXPECT_GT(counter.count, 100);
+}
+
 TEST(Allocations, noneInTheAdvanceUnderAHarmonicDrive)
 {
   for (const BasisParameters& basis : {BasisParameters(AttachmentBasis{5}), BasisParameters(ConjoinedBasis{3, 2})})

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "reference_system.h"
+#include "vibro_impact/core/beam.h"
 #include "vibro_impact/core/harmonic_simulation.h"
-#include "vibro_impact/core/pinned_beam.h"
 #include "vibro_impact/core/simulation.h"
 
 namespace vibro_impact::core
@@ -160,11 +160,11 @@ TEST_P(History, startsInTheGivenMotion)
   {
     parameters.contact.clearance = 1.0;
     const auto model = makeModel(parameters);
-    const PinnedBeam beam(parameters.beam1);
+    const Beam beam(beamOf(parameters.beam1));
     InitialMotion motion;
     motion.structure1 = {{0.001}, {0.3}};
     const auto* beam2 = std::get_if<BeamParameters>(&parameters.beam2);
-    if (beam2 != nullptr && beam2->youngs_modulus == parameters.beam1.youngs_modulus)
+    if (beam2 != nullptr && beam2->youngs_modulus == beamOf(parameters.beam1).youngs_modulus)
     {
       motion.structure2 = {{}, {0.1}};
     }
@@ -227,7 +227,7 @@ TEST_P(History, energiesOfStructuresAndSpringAreAllThereIs)
   for (SystemParameters parameters :
        {identicalBeams(GetParam()), limitingCase(1000.0, GetParam()), rigidCase(73223.0, GetParam())})
   {
-    parameters.beam1.contact_location = 0.021;
+    beamOf(parameters.beam1).contact_location = 0.021;
     parameters.contact.clearance = -1e-7;
     const SwitchedModel model(parameters);
     for (const LinearState* state : {&model.free(), &model.contact()})

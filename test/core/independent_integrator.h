@@ -139,7 +139,7 @@ private:
 
   double gap(const State& x) const
   {
-    double sum = model_->clearance();
+    double sum = linear().gap;
     for (Eigen::Index n = 0; n < linear().size(); ++n)
     {
       sum += linear().contact_deflection(n) * x[static_cast<std::size_t>(n)];
@@ -157,7 +157,7 @@ private:
   }
   double energy() const
   {
-    double sum = contact_ ? 0.5 * model_->stiffness() * model_->clearance() * model_->clearance() : 0.0;
+    double sum = contact_ ? 0.5 * model_->stiffness() * model_->clearance() * linear().gap : 0.0;
     for (Eigen::Index n = 0; n < linear().size(); ++n)
     {
       const double eta = state_[static_cast<std::size_t>(n)];

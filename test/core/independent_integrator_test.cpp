@@ -56,7 +56,7 @@ protected:
   IndependentIntegrator()
   {
     SystemParameters parameters = GetParam().parameters;
-    const double frequency = referenceScales(parameters.beam1).frequency;
+    const double frequency = referenceScales(parameters).frequency;
     const double deflection = 1.0 / (frequency * frequency);
     parameters.contact.clearance = GetParam().relative_clearance * deflection;
     model_ = std::make_shared<const SwitchedModel>(parameters);
@@ -197,7 +197,7 @@ SystemParameters attachment()
 SystemParameters offCentre()
 {
   SystemParameters parameters = limitingCase(1000.0, AttachmentBasis{2});
-  parameters.beam1.contact_location = 0.02;
+  beamOf(parameters.beam1).contact_location = 0.02;
   return parameters;
 }
 

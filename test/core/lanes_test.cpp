@@ -94,10 +94,14 @@ TEST_P(Lanes, doesAWholeIntervalInOnePass)
   std::vector<double> expected = z;
   addScaled(expected.data(), 0.3, kick.data(), 2 * half);
   growBy(expected.data(), expected.data() + half, f.data(), g.data(), half);
+  std::vector<double> kicked = randomNumbers(2 * half);
+  std::vector<double> expected_kicked = kicked;
+  addScaled(expected_kicked.data(), 0.3, z.data(), 2 * half);
 
-  const Forms forms =
-      kickGrowEvaluate(z.data(), 0.3, kick.data(), f.data(), g.data(), first.data(), second.data(), half);
+  const Forms forms = kickGrowEvaluate(z.data(), kicked.data(), 0.3, kick.data(), f.data(), g.data(), first.data(),
+                                       second.data(), half);
   EXPECT_EQ(z, expected);
+  EXPECT_EQ(kicked, expected_kicked);
   const auto form = [&](const std::vector<double>& weights)
   {
     // The lanes of both halves are added before those are.
@@ -117,6 +121,23 @@ TEST_P(Lanes, doesAWholeIntervalInOnePass)
   };
   EXPECT_EQ(forms.first, form(first));
   EXPECT_EQ(forms.second, form(second));
+}
+
+TEST_P(Lanes, quadraticFormIsTheSumOfItsTerms)
+{
+  const Eigen::Index half = GetParam();
+  const std::vector<double> z = randomNumbers(2 * half);
+  const std::vector<double> squares = randomNumbers(2 * half);
+  const std::vector<double> products = randomNumbers(half);
+  double expected = 0.0;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(half); ++n)
+  {
+    const double x = z[n];
+    const double y = z[static_cast<std::size_t>(half) + n];
+    expected += squares[n] * x * x + squares[static_cast<std::size_t>(half) + n] * y * y + products[n] * x * y;
+  }
+  EXPECT_NEAR(quadraticForm(z.data(), squares.data(), products.data(), half), expected,
+              1e-14 * static_cast<double>(half));
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Lanes, ::testing::Values(4, 8, 12, 16, 36, 204));

@@ -66,8 +66,8 @@ SystemParameters randomParameters(Dice& dice)
 {
   SystemParameters parameters;
   parameters.beam1 = paperBeam();
-  parameters.beam1.contact_location = contactShare(dice) * parameters.beam1.length;
-  BeamParameters beam2 = parameters.beam1;
+  beamOf(parameters.beam1).contact_location = contactShare(dice) * beamOf(parameters.beam1).length;
+  BeamParameters beam2 = beamOf(parameters.beam1);
   switch (dice.whole(0, 4))
   {
     case 0:
@@ -83,7 +83,7 @@ SystemParameters randomParameters(Dice& dice)
     default:
       beam2.youngs_modulus *= dice.decades(-1.0, 3.0);
       beam2.length *= dice.between(0.6, 1.5);
-      beam2.height *= dice.between(0.6, 1.5);
+      std::get<Rectangle>(beam2.cross_section).height *= dice.between(0.6, 1.5);
       beam2.contact_location = contactShare(dice) * beam2.length;
       parameters.beam2 = beam2;
   }
@@ -92,7 +92,7 @@ SystemParameters randomParameters(Dice& dice)
   parameters.damping.contact = dice.chance(0.3) ? 0.0 : dice.between(0.0, 0.2);
   parameters.basis = AttachmentBasis{dice.whole(1, 8)};
   // Deflections are of the order of a/omega_11^2, with a = 1 m/s^2.
-  const double deflection = 1.0 / std::pow(referenceScales(parameters.beam1).frequency, 2.0);
+  const double deflection = 1.0 / std::pow(referenceScales(parameters).frequency, 2.0);
   const double size = deflection * dice.decades(-4.0, 0.5);
   const auto sign = static_cast<double>(dice.whole(-1, 1));
   parameters.contact.clearance = sign * size;

@@ -11,18 +11,22 @@ inline BeamParameters paperBeam()
   beam.youngs_modulus = 1.66e9;
   beam.density = 954.0;
   beam.length = 0.0529;
-  beam.height = 0.00127;
-  beam.width = 0.0127;
+  beam.cross_section = Rectangle{0.00127, 0.0127};
   beam.contact_location = 0.02645;
   return beam;
+}
+
+/// The beam that a structure is.
+inline BeamParameters& beamOf(StructureParameters& structure)
+{
+  return std::get<BeamParameters>(structure);
 }
 
 /// E I/L^3 of that beam, N/m: k* = 1 is this contact stiffness.
 inline double paperStiffnessUnit()
 {
   const BeamParameters beam = paperBeam();
-  const double second_moment = beam.width * beam.height * beam.height * beam.height / 12.0;
-  return beam.youngs_modulus * second_moment / (beam.length * beam.length * beam.length);
+  return bendingStiffness(beam) / (beam.length * beam.length * beam.length);
 }
 
 /// The paper's limiting case with k* = k L^3/(E I) and the basis at choice.

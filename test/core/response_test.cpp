@@ -128,7 +128,24 @@ TEST(Response, aResponseThatNeverRepeatsCanBeSteadyInTheMean)
 TEST(Response, aSingleImpactHasNoPeriod)
 {
   std::vector<TimedImpact> impacts = periodic(1, 1, 1);
+  impacts[0].onset += 60 * cycle;
   const ResponseRow row = evaluateResponse(stepOf(100), impacts, scales).row;
   EXPECT_EQ(row.period, 0);
   EXPECT_EQ(row.impacts, 1);
+}
+
+TEST(Response, impactsOfTheTransientAloneAreNoResponse)
+{
+  DriveStep step = stepOf(100);
+  step.contact = {5.0, -0.25};
+  step.contact_share = 1.0;
+  const Response response = evaluateResponse(step, periodic(49, 1, 1), scales);
+  EXPECT_TRUE(response.captured.empty());
+  EXPECT_EQ(response.row.impacts, 0);
+  EXPECT_EQ(response.row.period, 1);
+  EXPECT_EQ(response.row.impulse_mean, 0.0);
+  EXPECT_EQ(response.row.peak_force, 0.0);
+  EXPECT_EQ(response.row.contact_share, 1.0) << "told by whoever knows";
+  EXPECT_EQ(response.row.stiffness, 5.0);
+  EXPECT_EQ(response.row.clearance, -0.25);
 }

@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import unittest
 
+import rosbag
 import rospkg
 import rostest
 from roslib.packages import find_node
@@ -56,6 +57,25 @@ class RecordedSweep(unittest.TestCase):
     def test_nothing_is_lost(self):
         self.assertIn("none lost", self.report)
         self.assertIn("%d steps found, 0 left out" % POINTS, self.report)
+
+    def test_simulate_gives_the_same_impacts_bit_for_bit(self):
+        out = os.path.join(self.directory.name, "simulated")
+        report = tool("simulate", "--bag", self.bag, "--every", "1000", "--out", out)
+        self.assertIn("0 bridged, 0 restarts from rest, 0 blocks refused", report)
+        simulated = table(os.path.join(out, "impacts.csv"))
+        with rosbag.Bag(self.bag) as bag:
+            topics = {info.msg_type: topic for topic, info in bag.get_type_and_topic_info().topics.items()}
+            period = next(bag.read_messages(topics["vibro_impact/BaseExcitation"])).message.sample_period
+            recorded = [record.message for record in bag.read_messages(topics["vibro_impact/Impact"])]
+        self.assertGreater(len(recorded), POINTS * CYCLES // 2)
+        # What is cut short by the end of the stream is published when the node ends.
+        self.assertIn(len(simulated) - len(recorded), (0, 1))
+        for row, impact in zip(simulated, recorded):
+            self.assertEqual(row["number"], impact.number)
+            self.assertEqual(row["onset_s"], impact.seq * period + impact.offset)
+            for name in ("impulse", "peak_force", "approach_speed", "separation_speed", "energy_lost"):
+                self.assertEqual(row[name], getattr(impact, name), name)
+            self.assertEqual(row["duration_s"], impact.duration)
 
     def test_steps_are_those_of_the_shaker(self):
         self.assertEqual(len(self.extracted), POINTS)

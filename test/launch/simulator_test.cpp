@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <map>
@@ -16,13 +18,18 @@
 #include <geometry_msgs/WrenchStamped.h>
 #include <gtest/gtest.h>
 #include <ros/ros.h>
+#include <rosbag/bag.h>
 #include <std_msgs/Float64.h>
 #include <std_srvs/Trigger.h>
+#include <unistd.h>
+#include <vibro_impact/SetContact.h>
 
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/core/switched_model.h"
+#include "vibro_impact/ros/contact_history.h"
 #include "vibro_impact/ros/conversions.h"
 #include "vibro_impact/ros/node_query.h"
+#include "vibro_impact/ros/recorded_run.h"
 
 namespace core = vibro_impact::core;
 namespace graph = vibro_impact::graph;
@@ -57,7 +64,9 @@ public:
     subscribe<std_msgs::Float64>("gap_now", gaps_now);
     subscribers_.push_back(node_.subscribe<diagnostic_msgs::DiagnosticArray>(
         "/diagnostics", 0, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { take(*message); }));
+    subscribe<vibro_impact::ModelInfo>("model_info", infos);
     reset_ = node_.serviceClient<std_srvs::Trigger>("simulator/reset");
+    set_contact_ = node_.serviceClient<vibro_impact::SetContact>("simulator/set_contact");
   }
 
   bool connect()
@@ -104,6 +113,16 @@ public:
     return trigger.response;
   }
 
+  void setContact(const core::ContactParameters& contact, std::uint64_t seq)
+  {
+    vibro_impact::SetContact call;
+    call.request.stiffness = contact.stiffness;
+    call.request.clearance = contact.clearance;
+    call.request.seq = seq;
+    ASSERT_TRUE(set_contact_.call(call));
+    EXPECT_TRUE(call.response.success) << call.response.message;
+  }
+
   /// Waits for diagnostics that know of the latest reset.
   bool upToDate()
   {
@@ -131,6 +150,7 @@ public:
   std::vector<vibro_impact::Impact> impacts;
   std::vector<geometry_msgs::WrenchStamped> wrenches;
   std::vector<std_msgs::Float64> gaps_now;
+  std::vector<vibro_impact::ModelInfo> infos;
   int level = -1;
   std::string summary;
   std::map<std::string, std::string> values;
@@ -170,6 +190,7 @@ private:
   std::vector<ros::Subscriber> subscribers_;
   ros::ServiceClient reset_;
   graph::NodeQuery query_;
+  ros::ServiceClient set_contact_;
   std::int64_t resets_ = 0;
 };
 
@@ -501,6 +522,117 @@ TEST_F(SimulatorTest, diagnosticsCountWhatIsDoneAndSilenceIsStale)
                client_->summary.find("no data on topic /base_excitation") != std::string::npos;
       }))
       << client_->summary;
+}
+
+/// What a bag holds, computed again in this process.
+struct Replay : graph::RecordingSink
+{
+  void onExcitation(const vibro_impact::BaseExcitation& block) override
+  {
+    Samples samples;
+    graph::fromMessage(block, samples);
+    excitation.push_back(samples);
+  }
+  void onGap(const graph::BlockHead& /*block*/) override
+  {
+  }
+  void onContactForce(const graph::BlockHead& /*block*/, const std::vector<double>& /*force*/) override
+  {
+  }
+  void onImpact(const vibro_impact::Impact& impact) override
+  {
+    impacts.push_back(impact);
+  }
+  void onModelInfo(const vibro_impact::ModelInfo& info) override
+  {
+    history.add(info);
+  }
+
+  std::vector<Samples> excitation;
+  std::vector<vibro_impact::Impact> impacts;
+  graph::ContactHistory history{"model_info"};
+};
+
+TEST_F(SimulatorTest, aRecordedChangeOfTheContactIsComputedAgainOffline)
+{
+  ASSERT_TRUE(client_->spinUntil([] { return !client_->infos.empty(); }));
+  const core::SystemParameters parameters = configuration();
+  const core::ContactParameters contact = parameters.contact;
+  const auto change = [&](const core::ContactParameters& to, std::uint64_t seq)
+  {
+    client_->setContact(to, seq);
+    core::SystemParameters changed = parameters;
+    changed.contact = to;
+    reference_->setContact(std::make_shared<core::SwitchedModel>(changed), seq);
+  };
+  change({contact.stiffness, 4.0e-7}, 5123);
+  change({2.0 * contact.stiffness, -3.0e-7}, openAfter(9000));
+  sendStream(0, 12000);
+  expectAnswers();  // so that the next sample is the same one here and there
+  change({0.5 * contact.stiffness, 1.0e-6}, 0);
+  sendStream(12000, 20000);
+  expectAnswers();
+  ASSERT_GT(expected_impacts_.size(), 100u);
+  ASSERT_TRUE(client_->spinUntil([] { return client_->infos.size() == 4; }));
+  EXPECT_EQ(client_->infos[1].seq, 5123u);
+  EXPECT_EQ(client_->infos[1].header.stamp, graph::toTime(begin_ + 5123 * nanoseconds));
+  EXPECT_EQ(client_->infos[3].seq, 12000u);
+  EXPECT_EQ(client_->infos[3].number, 3u);
+
+  char name[] = "/tmp/vibro_impact_change_XXXXXX";
+  const int file = mkstemp(name);
+  ASSERT_GE(file, 0);
+  close(file);
+  {
+    rosbag::Bag bag(name, rosbag::bagmode::Write);
+    const ros::Time start = graph::toTime(begin_);
+    const auto write = [&](const std::string& topic, const auto& messages)
+    {
+      for (const auto& message : messages)
+      {
+        bag.write(topic, start, message);
+      }
+    };
+    write("model_info", client_->infos);
+    write("gap", client_->gaps);
+    write("contact_force", client_->forces);
+    write("impact", client_->impacts);
+    for (std::uint64_t seq = 0; seq < 20000; seq += block_size)
+    {
+      vibro_impact::BaseExcitation message;
+      graph::toMessage(block(seq), message);
+      bag.write("base_excitation", start, message);
+    }
+  }
+  Replay replay;
+  graph::RecordedRun({name}).read(replay);
+  EXPECT_EQ(std::remove(name), 0);
+
+  const auto model_of = [&](const core::ContactParameters& of)
+  {
+    core::SystemParameters changed = replay.history.parameters();
+    changed.contact = of;
+    return std::make_shared<core::SwitchedModel>(changed);
+  };
+  const std::vector<graph::DatedContact>& contacts = replay.history.contacts();
+  ASSERT_EQ(contacts.size(), 4u);
+  graph::StreamSimulation simulation(model_of(contacts[0].contact), graph::StreamLimits{});
+  for (std::size_t i = 1; i < contacts.size(); ++i)
+  {
+    simulation.setContact(model_of(contacts[i].contact), contacts[i].seq);
+  }
+  std::size_t found = 0;
+  for (const Samples& samples : replay.excitation)
+  {
+    for (const graph::StampedImpact& impact : simulation.advance(samples).impacts)
+    {
+      vibro_impact::Impact message;
+      graph::toMessage(impact, message);
+      ASSERT_LT(found, replay.impacts.size());
+      expectSame(message, replay.impacts[found++]);
+    }
+  }
+  EXPECT_EQ(found, replay.impacts.size());
 }
 
 }  // namespace

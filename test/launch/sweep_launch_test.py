@@ -13,6 +13,7 @@ import unittest
 import rosbag
 import rostest
 import yaml
+from roslib.packages import find_node
 
 # Not by its name in the package: an install below the repository has a file of the same name, and roslaunch takes neither.
 LAUNCH_FILE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "launch", "sweep.launch")
@@ -86,6 +87,29 @@ class SweepLaunchTest(unittest.TestCase):
         self.expect_complete(path, output)
         self.assertIn("published %d samples, all of them answered, all of them recorded by /record" % SAMPLES, output)
         self.assertIn("100.0 %, 461.5 Hz (1.700)", output)
+
+    def test_takes_a_modal_table_beside_its_configuration(self):
+        config = os.path.join(self.directory, "table.yaml")
+        table = os.path.join(self.directory, "table.csv")
+        with open(table, "w") as stream:
+            stream.write("frequency_hz,contact_deflection,participation\n271.457,38.9,0.0257\n2443.1,38.9,0.0086\n")
+        with open(config, "w") as stream:
+            yaml.safe_dump({"beam1": {"modal_table": {"file": "table.csv"}}, "beam2": "rigid",
+                            "contact": {"stiffness": 24309.0, "clearance": 0.0},
+                            "damping": {"free": 0.01, "contact": 0.05}}, stream)
+        path = os.path.join(self.directory, "table.bag")
+        output = self.launch("bag:=" + path, "config:=" + config)
+        self.expect_complete(path, output)
+        os.remove(table)  # the bag has all of it
+        with rosbag.Bag(path) as bag:
+            info = next(message for _, message, _ in bag.read_messages(topics=["/model_info", "model_info"]))
+        self.assertIn("271.457", info.configuration)
+        self.assertNotIn(".csv", info.configuration)
+        extracted = subprocess.run([find_node("vibro_impact", "extract_frf")[0], path, "--out", self.directory],
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
+                                   timeout=PATIENCE, check=False)
+        self.assertEqual(extracted.returncode, 0, extracted.stdout)
+        self.assertIn("5 steps found", extracted.stdout)
 
     def test_keeps_to_a_speed(self):
         path = os.path.join(self.directory, "paced.bag")

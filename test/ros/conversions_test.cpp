@@ -82,7 +82,8 @@ TEST(ImpactConversion, comesBackUnchanged)
 {
   graph::StampedImpact impact;
   impact.stamp = stamp;
-  impact.impact = {3, 1000000000007ull, 1.1e-5, 2.2e-4, 3.3e-3, 4.4, 5.5e-5, 0.66, 0.77, 8.8e-6, true};
+  impact.impact = {3,    1000000000007ull, 1.1e-5, 2.2e-4, 3.3e-3, 4.4,    5.5e-5, 0.66,
+                   0.77, 8.8e-6,           true,   5.5e-6, 3.3e-6, -1.1e-6};
   vibro_impact::Impact message;
   graph::toMessage(impact, message);
   EXPECT_EQ(message.header.stamp, ros::Time(1700000000, 123456789));
@@ -97,6 +98,9 @@ TEST(ImpactConversion, comesBackUnchanged)
   EXPECT_EQ(message.approach_speed, 0.66);
   EXPECT_EQ(message.separation_speed, 0.77);
   EXPECT_EQ(message.energy_lost, 8.8e-6);
+  EXPECT_EQ(message.dissipated, 5.5e-6);
+  EXPECT_EQ(message.mapping_loss, 3.3e-6);
+  EXPECT_EQ(message.base_work, -1.1e-6);
   EXPECT_TRUE(message.cut_short);
 
   const graph::StampedImpact back = graph::fromMessage(message);
@@ -112,12 +116,15 @@ TEST(ImpactConversion, comesBackUnchanged)
   EXPECT_EQ(back.impact.separation_speed, impact.impact.separation_speed);
   EXPECT_EQ(back.impact.energy_lost, impact.impact.energy_lost);
   EXPECT_EQ(back.impact.cut_short, impact.impact.cut_short);
+  EXPECT_EQ(back.impact.dissipated, impact.impact.dissipated);
+  EXPECT_EQ(back.impact.mapping_loss, impact.impact.mapping_loss);
+  EXPECT_EQ(back.impact.base_work, impact.impact.base_work);
 }
 
 core::SystemParameters limitingCase()
 {
   core::SystemParameters parameters;
-  parameters.beam1 = {1.66e9, 954.0, 0.0529, 0.00127, 0.0127, 0.02645};
+  parameters.beam1 = core::BeamParameters{1.66e9, 954.0, 0.0529, core::Rectangle{0.00127, 0.0127}, 0.02645};
   parameters.beam2 = core::RigidSurface{};
   parameters.contact = {24309.426302924, 0.0};
   parameters.damping = {0.01, 0.05};
@@ -149,7 +156,7 @@ TEST(ModelInfoConversion, configurationLoadsBack)
   vibro_impact::ModelInfo message;
   graph::toMessage(core::SwitchedModel(parameters), vibro_impact::config::toYaml(parameters), "1.2.3", message);
   const core::SystemParameters back = graph::fromMessage(message);
-  EXPECT_EQ(back.beam1.length, parameters.beam1.length);
+  EXPECT_EQ(std::get<core::BeamParameters>(back.beam1).length, std::get<core::BeamParameters>(parameters.beam1).length);
   EXPECT_EQ(back.contact.stiffness, parameters.contact.stiffness);
   EXPECT_TRUE(std::holds_alternative<core::RigidSurface>(back.beam2));
   EXPECT_EQ(std::get<core::ConjoinedBasis>(back.basis).modes_contact, 3);

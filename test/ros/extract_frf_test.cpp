@@ -58,7 +58,7 @@ struct Sweep
   /// Rows of the response table by the steps as they were played.
   std::vector<core::ResponseRow> expected(const SyntheticRun& run) const
   {
-    const core::ReferenceScales scales = core::referenceScales(limitingCase().beam1);
+    const core::ReferenceScales scales = core::referenceScales(limitingCase());
     std::vector<core::ResponseRow> rows;
     for (const core::DriveStep& step : steps)
     {
@@ -319,7 +319,7 @@ TEST_F(ExtractFrf, losesEverything)
   SyntheticRun run = Sweep().run();
   std::vector<Gap> few(run.gaps.begin(), run.gaps.begin() + 1);
   run.gaps = few;
-  expectRefusal(extract(run, "--allow-gaps"), 1, "no step is left: all 5 have losses");
+  expectRefusal(extract(run, "--allow-gaps"), 1, "no step is left: all 5 are left out, the first: topic /gap");
 }
 
 TEST_F(ExtractFrf, refusesARestartWithinTheBag)
@@ -342,6 +342,71 @@ TEST_F(ExtractFrf, refusesSeveralModels)
   info.header.stamp = run.excitations[7].header.stamp;
   run.infos.push_back(info);
   expectRefusal(extract(run), 1, "topic /model_info: the configuration changes within the recording");
+}
+
+TEST_F(ExtractFrf, saysWhichRowsBelongToWhichContact)
+{
+  // Steps of 4737, 4651, 4569, 4489 and 4412 samples: a change on the border of the second, and one within the third.
+  Sweep sweep;
+  core::SystemParameters parameters = limitingCase();
+  const core::ContactParameters first = parameters.contact;
+  const core::ContactParameters second{1.5 * first.stiffness, -1.0e-7};
+  const core::ContactParameters third{1.5 * first.stiffness, 2.0e-7};
+  const SyntheticRun run(parameters, sweep.signal.samples(), sweep.signal.samplePeriod(),
+                         {{4800, second}, {12000, third}});
+  const Outcome outcome = extract(run);
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("the contact changed 2 times during the recording:\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("  from seq 0: stiffness 24309.426302924 N/m, clearance 0 m: row 1 of frf.csv\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("clearance -1e-07 m: rows 2 to 3 of frf.csv\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("  from seq 12000: stiffness 36464.139454386 N/m, clearance 2e-07 m: rows 4 to 6 "));
+  EXPECT_THAT(outcome.out, HasSubstr("changes of the contact leave 1.2")) << "cycles of the second step before 4800";
+  const auto rows = config::readResponseTable(path("results/frf.csv"));
+  ASSERT_EQ(rows.size(), 6u);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+  {
+    const core::ContactParameters& contact = i == 0 ? first : i < 3 ? second : third;
+    EXPECT_EQ(rows[i].stiffness, contact.stiffness) << i;
+    EXPECT_EQ(rows[i].clearance, contact.clearance) << i;
+    EXPECT_GT(rows[i].impacts, 0) << i;
+    EXPECT_GT(rows[i].contact_share, 0.05) << i;
+    EXPECT_LT(rows[i].contact_share, 0.95) << i;
+  }
+  EXPECT_NEAR(rows[2].frequency_hz, rows[3].frequency_hz, 1.0e-3) << "both of the third step";
+}
+
+TEST_F(ExtractFrf, aChangeThatIsNotRecordedIsALoss)
+{
+  Sweep sweep;
+  core::SystemParameters parameters = limitingCase();
+  const double stiffness = parameters.contact.stiffness;
+  SyntheticRun run(parameters, sweep.signal.samples(), sweep.signal.samplePeriod(),
+                   {{10000, {2.0 * stiffness, 0.0}}, {16000, {3.0 * stiffness, 0.0}}});
+  run.infos.erase(run.infos.begin() + 1);
+  expectRefusal(extract(run), 1, "number 1 to 1 (1 change of the contact before seq 16000) is missing");
+  run.infos.erase(run.infos.begin());
+  expectRefusal(extract(run), 1, "what holds before seq 16000 (number 1) is missing");
+}
+
+TEST_F(ExtractFrf, interferenceFitThatNeverSeparatesHasRowsWithoutImpacts)
+{
+  core::SystemParameters pressed = limitingCase();
+  pressed.contact.clearance = -1.0e-3;
+  Sweep sweep;
+  SyntheticRun run(pressed, sweep.signal.samples(), sweep.signal.samplePeriod());
+  ASSERT_EQ(run.impacts.size(), 1u) << "cut short by the end";
+  run.impacts.clear();  // the recorder ended before the simulator: it knows no topic of impacts
+  const Outcome outcome = extract(run);
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  const auto rows = config::readResponseTable(path("results/frf.csv"));
+  ASSERT_EQ(rows.size(), 5u);
+  for (const core::ResponseRow& row : rows)
+  {
+    EXPECT_EQ(row.impacts, 0);
+    EXPECT_EQ(row.contact_share, 1.0);
+    EXPECT_EQ(row.impulse_mean, 0.0);
+  }
 }
 
 TEST_F(ExtractFrf, refusesASampleThatIsNotFinite)
@@ -371,6 +436,7 @@ TEST_F(ExtractFrf, runWithoutContactHasRowsWithoutImpacts)
   const auto rows = config::readResponseTable(path("results/frf.csv"));
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[0].impacts, 0);
+  EXPECT_EQ(rows[0].contact_share, 0.0);
 }
 
 TEST_F(ExtractFrf, contactWithoutImpactsIsRefused)

@@ -55,12 +55,50 @@ void expectFaults(const XmlRpcValue& tree, const std::vector<std::string>& parts
   }
 }
 
+TEST(SimulatorParameters, everyKindOfStructureIsRead)
+{
+  XmlRpcValue tree = goodTree();
+  tree["beam1"] = XmlRpcValue();
+  tree["beam1"]["length"] = 2;
+  tree["beam1"]["contact_location"] = 1;
+  tree["beam1"]["section"]["bending_stiffness"] = 12.5;
+  tree["beam1"]["section"]["mass_per_length"] = 1;
+  tree["beam1"]["ends"][0] = "clamped";
+  tree["beam1"]["ends"][1] = "free";
+  tree["beam1"]["rigid_body"]["length"] = 0.1;
+  tree["beam1"]["rigid_body"]["mass"] = 3;
+  tree["beam1"]["rigid_body"]["rotary_inertia"] = 0;
+  XmlRpcValue& table = tree["beam2"];
+  table = XmlRpcValue();
+  const char* const columns[] = {"frequency_hz", "contact_deflection", "participation"};
+  for (int i = 0; i < 3; ++i)
+  {
+    table["modal_table"][columns[i]][0] = i;
+    table["modal_table"][columns[i]][1] = 1.5 + i;
+  }
+  const SimulatorParameters parameters = parseSimulatorParameters(tree, "/simulator");
+  const auto& beam = std::get<core::BeamParameters>(parameters.system.beam1);
+  EXPECT_EQ(beam.ends[0], core::End::clamped);
+  EXPECT_EQ(beam.ends[1], core::End::free);
+  EXPECT_EQ(beam.rigid_body->mass, 3.0);
+  const auto& modes = std::get<core::ModalTableParameters>(parameters.system.beam2);
+  EXPECT_EQ(modes.frequency_hz, (std::vector<double>{0.0, 1.5}));
+  EXPECT_EQ(modes.participation, (std::vector<double>{2.0, 3.5}));
+
+  // A file needs the folder that it is in, which the parameter server does not know.
+  tree["beam2"] = XmlRpcValue();
+  tree["beam2"]["modal_table"]["file"] = "nowhere.csv";
+  expectFaults(tree, {"beam2.modal_table.file", "nowhere.csv", "an absolute path"});
+  tree["configuration_directory"] = "/tmp/no/such/folder";
+  expectFaults(tree, {"/tmp/no/such/folder/nowhere.csv", "No such file"});
+}
+
 TEST(SimulatorParameters, modelIsRead)
 {
   const SimulatorParameters parameters = parseSimulatorParameters(goodTree(), "/simulator");
-  EXPECT_EQ(parameters.system.beam1.youngs_modulus, 1.66e9);
-  EXPECT_EQ(parameters.system.beam1.density, 954.0);
-  EXPECT_EQ(parameters.system.beam1.length, 0.0529);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.system.beam1).youngs_modulus, 1.66e9);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.system.beam1).density, 954.0);
+  EXPECT_EQ(std::get<core::BeamParameters>(parameters.system.beam1).length, 0.0529);
   EXPECT_EQ(parameters.system.contact.stiffness, 24309.426302924);
   EXPECT_TRUE(std::holds_alternative<core::RigidSurface>(parameters.system.beam2));
   EXPECT_EQ(std::get<core::AttachmentBasis>(parameters.system.basis).modes_per_beam, 3);

@@ -68,6 +68,7 @@ TEST_F(SimulatorStatisticsTest, allIsWell)
 {
   StreamSimulation::Answer start = answer(Action::Start);
   start.impacts.resize(3);
+  start.contact_changes.resize(2);
   statistics_.count(start, 0.0005);
   statistics_.count(answer(Action::Continue), 0.0005);
   report();
@@ -76,6 +77,7 @@ TEST_F(SimulatorStatisticsTest, allIsWell)
   EXPECT_EQ(value("Blocks accepted"), "2");
   EXPECT_EQ(value("Blocks refused"), "0");
   EXPECT_EQ(value("Impacts"), "3");
+  EXPECT_EQ(value("Contact changes"), "2");
   EXPECT_EQ(value("Input age (s)"), "0.100");
   EXPECT_EQ(value("Last refusal"), "none");
 }
@@ -166,6 +168,23 @@ TEST_F(SimulatorStatisticsTest, resetsAreCounted)
   expectStatus(DiagnosticStatus::OK, "simulating");
   EXPECT_EQ(value("Resets"), "1");
   EXPECT_EQ(value("Impacts"), "1");
+}
+
+TEST_F(SimulatorStatisticsTest, tellsTheEnergyAccount)
+{
+  vibro_impact::core::EnergyAccount account;
+  account.structure1 = 0.25;
+  account.work = 1.0;
+  account.dissipated_free = 0.5;
+  account.dissipated_contact = 0.125;
+  account.turnover = 2.0;
+  vibro_impact::graph::report(account, status_);
+  EXPECT_EQ(value("Energy in structure 1 (J)"), "0.25");
+  EXPECT_EQ(value("Energy in the spring (J)"), "0");
+  EXPECT_EQ(value("Work of the base (J)"), "1");
+  EXPECT_EQ(value("Dissipated free (J)"), "0.5");
+  EXPECT_EQ(value("Dissipated in contact (J)"), "0.125");
+  EXPECT_EQ(value("Energy account closes to"), "0.0625");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -25,12 +26,12 @@ constexpr Stamp nanoseconds = 20000;  // of a period
 constexpr Stamp begin = 1700000000000000000;
 constexpr std::size_t block_size = 250;
 
-std::shared_ptr<const core::SwitchedModel> model(double clearance = 0.0)
+std::shared_ptr<const core::SwitchedModel> model(double clearance = 0.0, double stiffness_factor = 1.0)
 {
   core::SystemParameters parameters;
-  parameters.beam1 = {1.66e9, 954.0, 0.0529, 0.00127, 0.0127, 0.02645};
+  parameters.beam1 = core::BeamParameters{1.66e9, 954.0, 0.0529, core::Rectangle{0.00127, 0.0127}, 0.02645};
   parameters.beam2 = core::RigidSurface{};
-  parameters.contact = {24309.426302924, clearance};
+  parameters.contact = {stiffness_factor * 24309.426302924, clearance};
   parameters.damping = {0.01, 0.05};
   parameters.basis = core::AttachmentBasis{3};
   return std::make_shared<core::SwitchedModel>(parameters);
@@ -350,6 +351,162 @@ TEST(StreamSimulation, preloadedContactIsDatedByItsFirstBlock)
 
   EXPECT_TRUE(simulation.reset().impacts.empty()) << "it rests, and no stream has begun";
   EXPECT_TRUE(simulation.advance(block(0)).impacts.empty());
+}
+
+// Changes of the contact -------------------------------------------------------------------------------------------
+
+TEST(StreamSimulation, contactChangesAtItsSampleHoweverTheBlocksAreCut)
+{
+  constexpr std::uint64_t samples = 10000;
+  // One of them in contact at least, and two in one of the greater blocks.
+  const std::vector<std::uint64_t> changes = {1037, 1501, 4000, openAfter(5000)};
+  std::vector<Record> records;
+  for (const std::size_t cut : {1u, 7u, 250u, 333u, 10000u})
+  {
+    StreamSimulation simulation(model(), StreamLimits{});
+    double clearance = 0.0;
+    for (const std::uint64_t seq : changes)
+    {
+      clearance -= 2.0e-6;
+      simulation.setContact(model(clearance, 1.0 - 1.0e4 * clearance), seq);
+    }
+    Record record;
+    std::vector<StreamSimulation::ContactChange> taken;
+    for (std::uint64_t seq = 0; seq < samples; seq += cut)
+    {
+      const auto& answer = simulation.advance(block(seq, std::min<std::size_t>(cut, samples - seq)));
+      record.add(answer);
+      taken.insert(taken.end(), answer.contact_changes.begin(), answer.contact_changes.end());
+    }
+    records.push_back(record);
+    ASSERT_EQ(taken.size(), changes.size());
+    for (std::size_t i = 0; i < changes.size(); ++i)
+    {
+      EXPECT_EQ(taken[i].seq, changes[i]);
+      EXPECT_EQ(taken[i].stamp, begin + static_cast<Stamp>(changes[i]) * nanoseconds);
+      EXPECT_EQ(taken[i].model->clearance(), -2.0e-6 * static_cast<double>(i + 1));
+    }
+    EXPECT_EQ(simulation.model().clearance(), clearance);
+  }
+  ASSERT_GT(records[0].impacts.size(), 30u);
+  for (const Record& record : records)
+  {
+    expectSame(record, records[0]);
+  }
+  StreamSimulation unchanged(model(), StreamLimits{});
+  const auto& before = unchanged.advance(block(0, samples)).gap.values;
+  EXPECT_EQ(std::vector<double>(before.begin(), before.begin() + 1037),
+            std::vector<double>(records[0].gap.begin(), records[0].gap.begin() + 1037));
+  EXPECT_NE(before[1037], records[0].gap[1037]);
+}
+
+TEST(StreamSimulation, contactChangesAtTheNextSampleThatComes)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  StreamSimulation expected(model(), StreamLimits{});
+  expected.setContact(model(1.0e-6), 1000);
+  simulation.advance(block(0, 1000));
+  expected.advance(block(0, 1000));
+  simulation.setContact(model(5.0e-6), 0);
+  simulation.setContact(model(1.0e-6), 0);  // the later request counts
+  const auto& answer = simulation.advance(block(1000, 1000));
+  ASSERT_EQ(answer.contact_changes.size(), 1u);
+  EXPECT_EQ(answer.contact_changes[0].seq, 1000u);
+  EXPECT_EQ(answer.gap.values, expected.advance(block(1000, 1000)).gap.values);
+  EXPECT_TRUE(simulation.advance(block(2000)).contact_changes.empty());
+}
+
+TEST(StreamSimulation, contactChangesInsideABridge)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  simulation.setContact(model(3.0e-6), 1300);
+  simulation.advance(block(0, 1000));
+  const auto& answer = simulation.advance(block(1600, 500));
+  ASSERT_EQ(answer.verdict.action, Action::Bridge);
+  ASSERT_EQ(answer.contact_changes.size(), 1u);
+  EXPECT_EQ(answer.contact_changes[0].seq, 1300u);
+  // The same line in two blocks.
+  StreamSimulation whole(model(), StreamLimits{});
+  whole.setContact(model(3.0e-6), 1300);
+  whole.advance(block(0, 1000));
+  Samples line = block(1000, 600);
+  for (std::size_t i = 0; i < 600; ++i)
+  {
+    line.values[i] = acceleration(999) + (acceleration(1600) - acceleration(999)) / 601.0 * static_cast<double>(i + 1);
+  }
+  whole.advance(line);
+  EXPECT_EQ(answer.gap.values, whole.advance(block(1600, 500)).gap.values);
+}
+
+TEST(StreamSimulation, streamStartsAtRestUnderTheContactThatHoldsThere)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  simulation.setContact(model(-1.0e-6), 0);
+  simulation.setContact(model(-2.0e-6), 500);
+  simulation.setContact(model(-3.0e-6), 1000);
+  simulation.setContact(model(-4.0e-6), 1100);
+  const auto& answer = simulation.advance(block(1000, 100));
+  ASSERT_EQ(answer.contact_changes.size(), 1u);
+  EXPECT_EQ(answer.contact_changes[0].seq, 1000u);
+  EXPECT_EQ(answer.contact_changes[0].stamp, block(1000).stamp);
+  StreamSimulation worn(model(-3.0e-6), StreamLimits{});
+  EXPECT_EQ(answer.gap.values, worn.advance(block(1000, 100)).gap.values);
+
+  // Neither a reset nor a restart brings an earlier contact back; what waits goes on waiting.
+  simulation.reset();
+  EXPECT_EQ(simulation.advance(block(0, 100)).gap.values,
+            StreamSimulation(model(-3.0e-6), StreamLimits{}).advance(block(0, 100)).gap.values);
+  const auto& restarted = simulation.advance(block(50000, 100));
+  ASSERT_EQ(restarted.verdict.action, Action::Restart);
+  ASSERT_EQ(restarted.contact_changes.size(), 1u);
+  EXPECT_EQ(restarted.contact_changes[0].seq, 50000u);
+  EXPECT_EQ(restarted.gap.values,
+            StreamSimulation(model(-4.0e-6), StreamLimits{}).advance(block(50000, 100)).gap.values);
+}
+
+TEST(StreamSimulation, theSameContactIsNoChange)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  StreamSimulation expected(model(), StreamLimits{});
+  for (std::uint64_t seq = 0; seq < 5000; seq += block_size)
+  {
+    simulation.setContact(model(), 0);
+    const auto& answer = simulation.advance(block(seq));
+    EXPECT_TRUE(answer.contact_changes.empty());
+    EXPECT_EQ(answer.gap.values, expected.advance(block(seq)).gap.values);
+  }
+}
+
+TEST(StreamSimulation, contactOfThePastIsRefused)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  StreamSimulation expected(model(), StreamLimits{});
+  simulation.advance(block(0, 1000));
+  expected.advance(block(0, 1000));
+  try
+  {
+    simulation.setContact(model(-1.0e-6), 999);
+    ADD_FAILURE();
+  }
+  catch (const std::invalid_argument& error)
+  {
+    EXPECT_STREQ(error.what(), "seq: 999 has been simulated; allowed: 0, the next sample, or at least 1000");
+  }
+  EXPECT_EQ(simulation.advance(block(1000)).gap.values, expected.advance(block(1000)).gap.values);
+}
+
+TEST(StreamSimulation, noMoreThanAThousandChangesWait)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  const auto worn = model(1.0e-6);
+  for (std::uint64_t seq = 1; seq <= StreamSimulation::max_waiting_changes; ++seq)
+  {
+    simulation.setContact(worn, seq);
+  }
+  EXPECT_THROW(simulation.setContact(worn, 5000), std::invalid_argument);
+  EXPECT_NO_THROW(simulation.setContact(worn, 1000)) << "in place of one that waits";
+  EXPECT_EQ(simulation.advance(block(0, 2000)).contact_changes.size(), 1u);
+  EXPECT_NO_THROW(simulation.setContact(worn, 5000));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <ros/time.h>
@@ -29,8 +30,15 @@ namespace vibro_impact::graph
 struct SyntheticRun
 {
   /// Plays the samples to the model in blocks of `block` samples.
-  SyntheticRun(const core::SystemParameters& parameters, const std::vector<double>& samples, double sample_period,
+  SyntheticRun(core::SystemParameters parameters, const std::vector<double>& samples, double sample_period,
                std::size_t block = 400)
+      : SyntheticRun(std::move(parameters), samples, sample_period, {}, block)
+  {
+  }
+
+  /// The contact changes with blocks: at the samples given, multiples of `block`.
+  SyntheticRun(core::SystemParameters parameters, const std::vector<double>& samples, double sample_period,
+               const std::map<std::uint64_t, core::ContactParameters>& changes, std::size_t block = 400)
   {
     struct Sink : core::ImpactSink
     {
@@ -49,6 +57,18 @@ struct SyntheticRun
     for (std::size_t i = 0; i < samples.size(); i += block)
     {
       const std::size_t count = std::min(block, samples.size() - i);
+      if (const auto change = changes.find(i); change != changes.end())
+      {
+        parameters.contact = change->second;
+        const auto changed = std::make_shared<const core::SwitchedModel>(parameters);
+        simulation.setModel(changed, sink);
+        ModelInfo info;
+        toMessage(*changed, config::toYaml(parameters), "0.0.0", info);
+        info.header.stamp = stampOf(i, sample_period);
+        info.seq = i;
+        info.number = infos.size();
+        infos.push_back(info);
+      }
       BaseExcitation excitation;
       excitation.header.stamp = stampOf(i, sample_period);
       excitation.seq = i;

@@ -5,7 +5,7 @@ import os
 
 FRF_COLUMNS = (
     "omega_star,frequency_hz,acceleration,period,steady,impacts,impacts_per_cycle,impulse_mean,impulse_min,impulse_max,"
-    "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean"
+    "impulse_star_mean,impulse_star_min,impulse_star_max,impulse_per_cycle,peak_force,duration_mean,contact_share,stiffness,clearance"
 ).split(",")
 IMPACT_COLUMNS = "omega_star,number,onset_s,duration_s,impulse,peak_force,approach_speed,separation_speed".split(",")
 IMPULSE_STAR_PER_IMPULSE = 250.0

@@ -125,6 +125,12 @@ class PlotTest(ScriptTest):
         result = self.run_script("plot_frf", self.beams, "--out", self.out)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
 
+    def test_rows_without_impacts_leave_room(self):
+        response = [(w, p, impulses if w > 1.4 else []) for w, p, impulses in synthetic_response(step=0.05)]
+        write_tables(self.beams, response)
+        result = self.run_script("plot_frf", self.beams, "--out", self.out)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+
 
 class LandmarksTest(ScriptTest):
     def lines(self, *arguments):
@@ -143,6 +149,18 @@ class LandmarksTest(ScriptTest):
         for name, line in lines.items():
             self.assertRegex(line, r" met$")
             self.assertNotIn("NOT MET", line)
+
+    def test_rows_without_impacts_have_no_period(self):
+        response = [(w, p, impulses if not 2.2 <= w <= 2.4055 else []) for w, p, impulses in synthetic_response()]
+        write_tables(self.beams, response)
+        lines = self.lines(self.beams)
+        self.assertIn(" not measured", lines["period one to period two"])
+        self.assertIn(" 1.600 ", lines["resonance"])
+
+    def test_no_impact_anywhere_is_not_measured(self):
+        write_tables(self.beams, [(w, 1, []) for w, _, _ in synthetic_response()])
+        for line in self.lines(self.beams).values():
+            self.assertIn("not measured", line)
 
     def test_moved_landmarks_are_not_met(self):
         write_tables(self.beams, [(omega_star + 0.03, p, impulses) for omega_star, p, impulses in synthetic_response()])

@@ -20,6 +20,10 @@ struct ImpactRow
   double peak_force = 0.0;        ///< N
   double approach_speed = 0.0;    ///< m/s
   double separation_speed = 0.0;  ///< m/s
+  double energy_lost = 0.0;       ///< dissipated + mapping_loss, J
+  double dissipated = 0.0;        ///< J
+  double mapping_loss = 0.0;      ///< J
+  double base_work = 0.0;         ///< J
 };
 
 /// frf.csv: comma-separated text with one row per response, in their order, under the names of ResponseRow's members;

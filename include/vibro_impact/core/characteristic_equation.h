@@ -27,7 +27,7 @@ public:
     double distance = 0.0;  ///< x - p_nearest, (rad/s)^2
   };
 
-  /// stiffness k > 0, N/m; poles p_m strictly ascending, > 0, (rad/s)^2; deflections b_m != 0, one per pole, kg^-1/2.
+  /// stiffness k > 0, N/m; poles p_m strictly ascending, >= 0, (rad/s)^2; deflections b_m != 0, one per pole, kg^-1/2.
   CharacteristicEquation(double stiffness, Eigen::ArrayXd poles, const Eigen::ArrayXd& deflections,
                          std::vector<double> series = {});
 

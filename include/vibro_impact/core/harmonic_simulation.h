@@ -53,7 +53,8 @@ public:
   /// Since reset() or start(), over any number of drives.
   EnergyAccount energyAccount() const;
 
-  double time() const;  ///< since setDrive(), s
+  double time() const;         ///< since setDrive(), s
+  double contactTime() const;  ///< spent in contact since the start from rest, s
   const SwitchedModel& model() const;
 
 private:

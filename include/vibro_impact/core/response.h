@@ -28,6 +28,10 @@ struct ResponseRow
   double impulse_per_cycle = 0.0;  ///< impulse of a mean drive cycle, N s
   double peak_force = 0.0;         ///< greatest force of the captured impacts, N
   double duration_mean = 0.0;      ///< of the captured impacts, s
+  double contact_share = 0.0;      ///< share of the last half of the step that is spent in contact, 1: with no impacts,
+                                   ///< 0 means never reached and 1 never separated
+  double stiffness = 0.0;          ///< of the contact spring, N/m
+  double clearance = 0.0;          ///< m
 };
 
 /// A captured impact: a whole contact episode on the time axis of one constant-frequency step.
@@ -50,10 +54,12 @@ struct ResponseOptions
 /// One step of constant frequency and amplitude.
 struct DriveStep
 {
-  double frequency = 0.0;     ///< Omega, rad/s, > 0
-  double acceleration = 0.0;  ///< amplitude, m/s^2, >= 0
-  double start = 0.0;         ///< s
-  double end = 0.0;           ///< s, > start
+  double frequency = 0.0;          ///< Omega, rad/s, > 0
+  double acceleration = 0.0;       ///< amplitude, m/s^2, >= 0
+  double start = 0.0;              ///< s
+  double end = 0.0;                ///< s, > start
+  ContactParameters contact = {};  ///< that holds throughout the step
+  double contact_share = 0.0;      ///< share of its last half that is spent in contact, 1
 };
 
 /// The response of one step: its row of the table and the impacts that made it.
@@ -64,8 +70,8 @@ struct Response
 };
 
 /// Evaluates the end of a step: steady state, period, impulses. `impacts` are those of the step by ascending onset;
-/// episodes that are cut short do not count. Serves the direct sweep and the recorded bag alike. No impacts give a row
-/// of zeros with period 1.
+/// episodes that are cut short do not count. Serves the direct sweep and the recorded bag alike. No impacts in the last
+/// half of the step, whatever the transient did before, give a row of zeros with period 1.
 Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>& impacts, const ReferenceScales& scales,
                           const ResponseOptions& options = {});
 

@@ -32,6 +32,13 @@ public:
   /// SwitchedModel::freeCoordinates() does, and leaves everything as it was.
   void start(const InitialMotion& motion, ImpactSink& sink);
 
+  /// From now on moves `model`, one of the same structures with another contact: between the sample taken last and the
+  /// next one. Displacements and velocities are kept, the gap and the spring's energy change at once; an open episode
+  /// goes on if the contact does, and is reported to `sink` as cut short if not. Before the first sample it puts to
+  /// rest. Builds tables, and so allocates. Throws std::invalid_argument, and changes nothing, if the free modes of the
+  /// two models differ.
+  void setModel(std::shared_ptr<const SwitchedModel> model, ImpactSink& sink);
+
   /// Takes the next `count` samples of the base acceleration (m/s^2, finite) and writes the gap (m) and the contact
   /// force (N, positive in compression) at the time of each. Reports every impact that ends on the way.
   void advance(const double* acceleration, std::size_t count, double* gap, double* force, ImpactSink& sink);

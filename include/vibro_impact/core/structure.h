@@ -1,15 +1,20 @@
 #pragma once
 
 #include <limits>
+#include <memory>
+#include <optional>
+
+#include "vibro_impact/core/parameters.h"
 
 namespace vibro_impact::core
 {
 /// One mass-normalised mode of a structure, seen from the contact point and from the base.
 struct Mode
 {
-  double frequency = 0.0;           ///< natural frequency omega, rad/s
+  double frequency = 0.0;           ///< natural frequency omega, rad/s; 0: a rigid-body mode
   double contact_deflection = 0.0;  ///< mode shape at the contact point phi(x_c), kg^-1/2
   double participation = 0.0;       ///< participation factor in base motion Gamma = integral of m phi dx, kg^1/2
+  std::optional<double> damping_ratio = std::nullopt;  ///< while apart; none: that of the configuration
 };
 
 /// A linear elastic structure on supports that follow the base, seen only through its modal data at the contact point.
@@ -27,11 +32,14 @@ public:
   /// How many modes are known: 0 for a rigid surface, `unlimited` where there is a closed form.
   virtual int modeCount() const = 0;
 
+  /// How many of them, the first ones, have frequency zero.
+  virtual int rigidBodyModeCount() const = 0;
+
   /// Mode m = 1, 2, ... modeCount(), by ascending frequency.
   virtual Mode mode(int m) const = 0;
 
   /// Static deflection of the contact point under a unit force there without the part of the lowest `kept` modes,
-  /// sum_{m > kept} phi_m^2/omega_m^2, m/N; kept >= 0.
+  /// sum_{m > kept} phi_m^2/omega_m^2, m/N; kept >= rigidBodyModeCount().
   virtual double staticReceptance(int kept) const = 0;
 
   /// The same under a unit base deceleration, sum_{m > kept} phi_m Gamma_m/omega_m^2, s^2.
@@ -41,5 +49,8 @@ public:
   /// Infinite at a natural frequency whose mode moves the contact point.
   virtual double receptance(double omega) const = 0;
 };
+
+/// The structure that the parameters, which must have passed validate(), describe; none for a rigid surface.
+std::unique_ptr<const Structure> makeStructure(const StructureParameters& parameters);
 
 }  // namespace vibro_impact::core

@@ -13,7 +13,7 @@
 namespace vibro_impact::core
 {
 /// One of the two linear states, in its own modal coordinates eta_n:
-///   eta_n'' + 2 zeta_n omega_n eta_n' + omega_n^2 eta_n = -Gamma_n a(t) + f_n,     g = clearance + sum_n b_n eta_n
+///   eta_n'' + 2 zeta_n omega_n eta_n' + omega_n^2 eta_n = -Gamma_n a(t) + f_n,     g = g_0 + sum_n b_n eta_n
 /// All arrays have one entry per coordinate.
 struct LinearState
 {
@@ -24,6 +24,8 @@ struct LinearState
   Eigen::ArrayXd contact_deflection;  ///< b_n in S0, d_n in S1: gap per unit coordinate, kg^-1/2
   Eigen::ArrayXd participation;       ///< Gamma_n, kg^1/2
   Eigen::ArrayXd preload;             ///< constant modal force f_n: 0 in S0, -k clearance d_n in S1, N kg^-1/2
+  double gap = 0.0;  ///< g_0, m: the clearance; in S1 of the conjoined basis as much less of it as the modes that are
+                     ///< left out yield to the preload, so that the gap at rest is the static one
 
   Eigen::Index size() const
   {

@@ -29,7 +29,7 @@ void toMessage(const Samples& samples, BaseExcitation& message);
 void toMessage(const Samples& samples, Gap& message);
 void toMessage(const Samples& samples, ContactForce& message);
 void toMessage(const StampedImpact& impact, Impact& message);
-/// `configuration` is the YAML text that gives `model`; the stamp stays zero: it holds from the first sample on.
+/// `configuration` is the YAML text that gives `model`; stamp, seq and number are zero: it holds from the start.
 void toMessage(const core::SwitchedModel& model, const std::string& configuration, const std::string& version,
                ModelInfo& message);
 

@@ -40,14 +40,22 @@ public:
   virtual void onModelInfo(const ModelInfo& info) = 0;
 };
 
-/// The topics of a run in a recording, found by the types of their messages.
+/// The topics of a run in a recording, found by the types of their messages; empty where there is none.
 struct RecordedTopics
 {
   std::string base_excitation;
   std::string gap;
   std::string contact_force;
-  std::string impact;  ///< empty if there is none: a recorder knows no topic on which nothing was ever published
+  std::string impact;
   std::string model_info;
+};
+
+/// What a recording must hold.
+enum class RecordedContents
+{
+  whole_run,  ///< excitation, its answers and model_info; there may be no impacts, since a recorder knows no topic on
+              ///< which nothing was ever published
+  excitation  ///< that alone will do; answers and impacts are not looked for
 };
 
 /// One or several bags of one run: a split bag is read as one.
@@ -60,7 +68,8 @@ public:
   /// Opens the bags and finds the topics; where several have one type, that in `name_space` (such as "/rig1") is taken.
   /// Throws config::Error, with a line that names the bag and says what to do, if a bag is missing, no bag, cut off or
   /// without an index, and if a topic is missing or ambiguous.
-  explicit RecordedRun(const std::vector<std::string>& paths, const std::string& name_space = "");
+  explicit RecordedRun(const std::vector<std::string>& paths, const std::string& name_space = "",
+                       RecordedContents contents = RecordedContents::whole_run);
   ~RecordedRun();
   RecordedRun(RecordedRun&&) noexcept;
   RecordedRun& operator=(RecordedRun&&) noexcept;
@@ -69,6 +78,9 @@ public:
 
   /// Reads everything, ordered by the time of recording. Throws config::Error if a bag is damaged.
   void read(RecordingSink& sink, const Progress& progress = {}) const;
+
+  /// Reads model_info alone.
+  void readModelInfo(const std::function<void(const ModelInfo&)>& sink) const;
 
   /// Reads the excitation alone.
   void readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress = {}) const;

@@ -52,7 +52,8 @@ public:
   /// False: a repetition, to be left. Throws config::Error for an impact with a value that is not finite.
   bool takeImpact(const Impact& impact);
 
-  /// Compares everything taken. Throws config::Error if there is no excitation, or contact but no topic of impacts.
+  /// Compares everything taken. Throws config::Error if there is no excitation, or a contact has ended but
+  /// there is no topic of impacts.
   RecordingSummary finish();
 
 private:
@@ -65,7 +66,6 @@ private:
   std::vector<BlockHead> excitation_;
   std::vector<BlockHead> gaps_;
   std::vector<BlockHead> forces_;
-  bool contact_ = false;              // the force shows one
   bool contact_goes_on_ = false;      // over the end of the last block of force
   std::uint64_t last_separated_ = 0;  // sample without contact that follows one in contact, the last one
   std::vector<Loss> losses_;

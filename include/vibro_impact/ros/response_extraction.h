@@ -7,6 +7,7 @@
 
 #include "vibro_impact/core/drive_steps.h"
 #include "vibro_impact/core/response.h"
+#include "vibro_impact/ros/contact_history.h"
 #include "vibro_impact/ros/recorded_run.h"
 #include "vibro_impact/ros/recording_check.h"
 
@@ -19,26 +20,36 @@ struct ExtractionOptions
   core::ResponseOptions response;
 };
 
-/// A step of the drive that is not evaluated because of a loss.
+/// A step of the drive, or the part of one under one contact, that is not evaluated because of a loss, or because a
+/// change of the contact has left too few cycles of it.
 struct LeftOutStep
 {
   double omega_star = 0.0;  ///< drive frequency over the lowest natural frequency of beam 1, 1
   std::uint64_t first = 0;  ///< number of its first sample
   std::uint64_t last = 0;   ///< number of the sample after its last one
-  std::string reason;       ///< the loss
+  std::string reason;       ///< the loss or the change
+};
+
+/// A contact of the recording and its share of the responses.
+struct ContactSpan
+{
+  DatedContact from;
+  std::size_t responses = 0;  ///< so many, after those of the contact before
 };
 
 /// The frequency response that a recording holds. The time axis is that of the stream: sample 0 at 0 s.
 struct Extraction
 {
   RecordingSummary recording;
-  std::vector<core::Response> responses;  ///< one per step, in order of time
+  std::vector<core::Response> responses;  ///< one per step and contact, in order of time
+  std::vector<ContactSpan> contacts;      ///< in order of time, at least one
   std::vector<LeftOutStep> left_out;
 };
 
 /// Reads a recording twice: for what it holds and the steps of its drive, and for the exact frequencies of these.
-/// Throws config::Error, in one message, where it cannot give a response: see RecordingCheck; something is missing and
-/// gaps are not allowed; no model_info, or several that differ; no step of constant frequency; no step left.
+/// A step in which the contact changes is cut there, and each part of it evaluated by itself. Throws config::Error, in
+/// one message, where it cannot give a response: see RecordingCheck; something is missing and gaps are not allowed; no
+/// model_info, or several that differ in more than the contact; no step of constant frequency; no step left.
 Extraction extractResponses(const RecordedRun& recording, const ExtractionOptions& options,
                             const RecordedRun::Progress& progress = {});
 

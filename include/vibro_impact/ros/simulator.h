@@ -10,6 +10,7 @@
 #include <vibro_impact/ContactForce.h>
 #include <vibro_impact/Gap.h>
 #include <vibro_impact/Impact.h>
+#include <vibro_impact/SetContact.h>
 
 #include "vibro_impact/ros/extremes.h"
 #include "vibro_impact/ros/log_throttle.h"
@@ -36,15 +37,17 @@ public:
 private:
   void onExcitation(const ros::MessageEvent<const BaseExcitation>& event);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onSetContact(SetContact::Request& request, SetContact::Response& response);
   void onWaiting(const ros::WallTimerEvent& event);
 
   void publish(const StreamSimulation::Answer& answer);
-  void publishModelInfo(ros::NodeHandle& node);
+  /// What holds from sample `seq` on, at `stamp`.
+  void publishModelInfo(const core::SwitchedModel& model, std::uint64_t seq, const ros::Time& stamp);
   void log(const Verdict& verdict);
 
   SimulatorParameters parameters_;
-  std::shared_ptr<const core::SwitchedModel> model_;
   StreamSimulation simulation_;
+  std::uint64_t contact_changes_ = 0;
   ExtremesHold extremes_;
   SourceGuard guard_;
   SimulatorStatistics statistics_;
@@ -54,6 +57,7 @@ private:
   LogThrottle restarts_;
   LogThrottle publishers_;
   LogThrottle losses_;
+  LogThrottle contact_refusals_;
 
   // Buffers, so that a block allocates nothing once the largest has been seen.
   Samples excitation_;
@@ -71,6 +75,7 @@ private:
   ros::WallTimer diagnostic_timer_;
   ros::WallTimer waiting_timer_;
   ros::ServiceServer reset_server_;
+  ros::ServiceServer set_contact_server_;
   ros::Subscriber excitation_subscriber_;
 };
 

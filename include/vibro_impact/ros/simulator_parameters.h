@@ -21,9 +21,10 @@ struct SimulatorParameters
   double diagnostic_period = 1.0;   ///< s of wall time
 };
 
-/// Reads a parameter tree, as the parameter server gives it. A text that is wholly a number counts as one. Throws
-/// config::Error with all faults in one message, `name` the name of the tree: unknown, missing, mistyped and
-/// out-of-range parameters, each with its value and what is allowed.
+/// Reads a parameter tree, as the parameter server gives it. A text that is wholly a number counts as one. The file of
+/// a modal table is relative to `configuration_directory`; without that its path must be absolute. Throws config::Error
+/// with all faults in one message, `name` the name of the tree: unknown, missing, mistyped and out-of-range parameters,
+/// each with its value and what is allowed.
 SimulatorParameters parseSimulatorParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name);
 
 /// A parameter tree as YAML text: numbers, words, lists and maps mean the same in both.

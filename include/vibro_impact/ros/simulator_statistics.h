@@ -6,6 +6,7 @@
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
+#include "vibro_impact/core/energy_account.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
 namespace vibro_impact::graph
@@ -42,6 +43,7 @@ private:
     std::uint64_t restarts = 0;
     std::uint64_t resets = 0;
     std::uint64_t impacts = 0;
+    std::uint64_t contact_changes = 0;
     std::uint64_t switch_limits = 0;
     double stream_time = 0.0;     ///< s
     double computing_time = 0.0;  ///< s
@@ -55,5 +57,8 @@ private:
   std::string last_refusal_;
   std::string publishers_;
 };
+
+/// The entries of an energy account (J), and how well it closes.
+void report(const core::EnergyAccount& account, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace vibro_impact::graph

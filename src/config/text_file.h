@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace vibro_impact::config
+{
+/// A whole file. Throws Error, naming the path, if it cannot be read or is larger than `largest` bytes, "which `none`".
+std::string readTextFile(const std::string& path, std::size_t largest, const std::string& none);
+
+/// The cells of one line of a table, without its end of line.
+std::vector<std::string> splitCells(std::string line);
+
+}  // namespace vibro_impact::config

@@ -1,0 +1,211 @@
+#!/usr/bin/python3
+"""The contact of a running simulator changes; what a bag holds of it gives the same impacts again in a new one."""
+
+import math
+import os
+import subprocess
+import tempfile
+
+import rosbag
+import rospkg
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+
+from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
+from vibro_impact.msg import BaseExcitation, Gap, Impact, ModelInfo
+from vibro_impact.srv import SetContact
+
+PACKAGE = rospkg.RosPack().get_path("vibro_impact")
+PERIOD = 2.0e-5
+BLOCK = 250
+STIFFNESS = 24309.426302924
+
+
+def configuration():
+    with open(os.path.join(PACKAGE, "config", "interference_fit.yaml")) as stream:
+        return dict(yaml.safe_load(stream), queue_size=0, diagnostic_period=0.1)
+
+
+def block(seq):
+    message = BaseExcitation(seq=seq, sample_period=PERIOD)
+    message.header.stamp = rospy.Time(1700000000) + rospy.Duration(nsecs=seq * 20000)
+    message.acceleration = [2.0 * math.sin(1.6 * 1705.6 * i * PERIOD) for i in range(seq, seq + BLOCK)]
+    return message
+
+
+def contact(info):
+    values = yaml.safe_load(info.configuration)["contact"]
+    return float(values["stiffness"]), float(values["clearance"])
+
+
+def fields(message):
+    """All that an impact says, without what roscpp writes into its header."""
+    return [str(message.header.stamp)] + [getattr(message, slot) for slot in message.__slots__ if slot != "header"]
+
+
+class Rig:
+    """A simulator of its own, and all that it publishes."""
+
+    def __init__(self, test, name_space):
+        test.namespace = name_space
+        test.start(configuration())
+        self.test = test
+        self.name = name_space + "/simulator"
+        self.messages = {}
+        self.topics = []
+        for topic, kind in [("gap", Gap), ("impact", Impact), ("model_info", ModelInfo)]:
+            self.subscribe(name_space + "/" + topic, topic, kind)
+        self.subscribe("/diagnostics", "diagnostics", DiagnosticArray)
+        self.publisher = rospy.Publisher(name_space + "/base_excitation", BaseExcitation, queue_size=1000)
+        test.interfaces.append(self.publisher)
+        rospy.wait_for_service(self.name + "/set_contact", PATIENCE)
+        self.set_contact = rospy.ServiceProxy(self.name + "/set_contact", SetContact)
+
+    def subscribe(self, topic, key, kind):
+        self.messages[key] = []
+        self.topics.append(topic)
+        self.test.interfaces.append(rospy.Subscriber(topic, kind, self.messages[key].append, queue_size=None))
+
+    def connect(self):
+        self.test.assertTrue(wait_until(
+            lambda: self.publisher.get_num_connections() == 1 and self.messages["model_info"]
+            and is_connected(self.name, self.topics)), self.test.printed())
+
+    def count(self, key):
+        """A number of this simulator's latest diagnostics; -1 before the first."""
+        for message in reversed(self.messages["diagnostics"]):
+            for status in message.status:
+                if status.name.startswith(self.name.lstrip("/") + ":") or status.name.startswith(self.name + ":"):
+                    for value in status.values:
+                        if value.key == key:
+                            return int(value.value)
+        return -1
+
+    def answered(self, blocks):
+        """Waits for all answers to so many blocks."""
+        self.test.assertTrue(wait_until(
+            lambda: self.count("Blocks accepted") == blocks and len(self.messages["gap"]) == blocks
+            and len(self.messages["impact"]) == self.count("Impacts")
+            and len(self.messages["model_info"]) == 1 + self.count("Contact changes")), self.test.printed())
+
+
+class ContactChangeTest(NodeProcessTest):
+    node = "simulator"
+
+    def refused(self, rig, stiffness, clearance, seq, reason):
+        answer = rig.set_contact(stiffness, clearance, seq)
+        self.assertFalse(answer.success)
+        self.assertIn(reason, answer.message)
+        self.assertEqual(len(answer.message.splitlines()), 1)
+
+    def test_a_bag_gives_the_same_impacts_in_a_new_simulator(self):
+        rig = Rig(self, self.namespace)
+        rig.connect()
+        # Named beforehand, in and out of order, two of them in one block; then one as it comes.
+        for seq, stiffness, clearance in [
+                (9000, STIFFNESS, -5.0e-8), (3000, 0.8 * STIFFNESS, -7.0e-8), (3100, 0.8 * STIFFNESS, -6.0e-8)]:
+            answer = rig.set_contact(stiffness, clearance, seq)
+            self.assertTrue(answer.success, answer.message)
+            self.assertEqual(answer.message, "holds from sample %d on" % seq)
+        blocks = [block(seq) for seq in range(0, 25000, BLOCK)]
+        for message in blocks[:60]:
+            rig.publisher.publish(message)
+        rig.answered(60)
+        self.assertEqual(rig.set_contact(1.3 * STIFFNESS, 1.0e-8, 0).message, "holds from the next sample on")
+        for message in blocks[60:]:
+            rig.publisher.publish(message)
+        rig.answered(100)
+
+        infos = rig.messages["model_info"]
+        self.assertEqual([(info.seq, info.number) for info in infos], [(0, 0), (3000, 1), (3100, 2), (9000, 3), (15000, 4)])
+        self.assertEqual(contact(infos[0]), (STIFFNESS, -1.0e-7))
+        self.assertEqual(contact(infos[4]), (1.3 * STIFFNESS, 1.0e-8))
+        self.assertTrue(infos[0].header.stamp.is_zero())
+        self.assertEqual(infos[4].header.stamp, blocks[60].header.stamp)
+        self.assertNotEqual(infos[1].contact_frequencies, infos[0].contact_frequencies)
+        impacts = [fields(impact) for impact in rig.messages["impact"]]
+        self.assertGreater(len(impacts), 80)
+
+        # The latched one is the latest, for whoever comes late.
+        late = []
+        self.interfaces.append(rospy.Subscriber(self.namespace + "/model_info", ModelInfo, late.append))
+        self.assertTrue(wait_until(lambda: late))
+        self.assertEqual(late[0].number, 4)
+
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        path = os.path.join(directory.name, "run.bag")
+        with rosbag.Bag(path, "w") as bag:
+            for info in infos:
+                bag.write("model_info", info, blocks[0].header.stamp)
+            for message in blocks:
+                bag.write("base_excitation", message, message.header.stamp)
+
+        again = Rig(self, self.namespace + "/again")
+        again.connect()
+        again.publisher.unregister()
+        output = subprocess.check_output(
+            [os.path.join(PACKAGE, "scripts", "replay_contact"), path, "--node", again.name], universal_newlines=True)
+        self.assertIn("4 changes of the contact told to", output)
+        subprocess.check_call(
+            ["rosbag", "play", "--quiet", "--rate", "5", "--delay", "1", "--wait-for-subscribers", path,
+             "--topics", "base_excitation", "base_excitation:=" + self.namespace + "/base_excitation"],
+            stdout=subprocess.DEVNULL, timeout=PATIENCE)
+        again.answered(100)
+        self.assertEqual([fields(impact) for impact in again.messages["impact"]], impacts)
+        self.assertEqual([(info.seq, info.number, info.configuration) for info in again.messages["model_info"]],
+                         [(info.seq, info.number, info.configuration) for info in infos])
+        self.assertEqual([gap.gap for gap in again.messages["gap"]], [gap.gap for gap in rig.messages["gap"]])
+
+    def test_bad_values_change_nothing(self):
+        rig = Rig(self, self.namespace)
+        rig.connect()
+        for seq in range(0, 1000, BLOCK):
+            rig.publisher.publish(block(seq))
+        rig.answered(4)
+        self.refused(rig, -1.0, 0.0, 0, "contact.stiffness = -1")
+        self.refused(rig, 0.0, 0.0, 0, "contact.stiffness")
+        self.refused(rig, math.nan, 0.0, 0, "contact.stiffness = nan")
+        self.refused(rig, STIFFNESS, math.inf, 0, "contact.clearance = inf")
+        self.refused(rig, 1.0e30, 0.0, 0, "k L^3/(E I)")
+        self.refused(rig, STIFFNESS, 0.0, 999, "seq: 999 has been simulated; allowed: 0, the next sample, or at least 1000")
+        rig.publisher.publish(block(1000))
+        rig.answered(5)
+        self.assertEqual(len(rig.messages["model_info"]), 1)
+        self.assertEqual(rig.count("Contact changes"), 0)
+        self.assertIn("contact not changed: contact.stiffness", self.printed())
+
+    def test_replay_refuses_what_it_cannot_replay(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+
+        def replay(*arguments):
+            result = subprocess.run([os.path.join(PACKAGE, "scripts", "replay_contact"), *arguments],
+                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
+            self.assertEqual(result.returncode, 1, result.stdout)
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            return result.stderr
+
+        def bag(name, *infos):
+            path = os.path.join(directory.name, name)
+            with rosbag.Bag(path, "w") as file:
+                file.write("base_excitation", block(0), rospy.Time(1))
+                for info in infos:
+                    file.write("model_info", info, rospy.Time(1))
+            return path
+
+        good = yaml.safe_dump(configuration())
+        self.assertIn("nowhere.bag", replay(os.path.join(directory.name, "nowhere.bag")))
+        self.assertIn("holds 0 topics of type vibro_impact/ModelInfo", replay(bag("none.bag")))
+        self.assertIn("holds a model_info that cannot be read", replay(bag("bad.bag", ModelInfo(configuration="contact: 3"))))
+        lost = bag("lost.bag", ModelInfo(configuration=good), ModelInfo(configuration=good, number=2))
+        self.assertIn("number 1 is missing", replay(lost))
+        whole = bag("whole.bag", ModelInfo(configuration=good))
+        self.assertIn("/nobody/set_contact", replay(whole, "--node", "/nobody", "--timeout", "0.5"))
+
+
+if __name__ == "__main__":
+    rospy.init_node("contact_change_test")
+    rostest.rosrun("vibro_impact", "contact_change_test", ContactChangeTest)
