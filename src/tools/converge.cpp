@@ -1,9 +1,6 @@
 // How many modes the response of a configuration needs.
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <iostream>
 #include <optional>
@@ -12,6 +9,7 @@
 #include <vector>
 
 #include "command_line.h"
+#include "progress_line.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/convergence.h"
 #include "vibro_impact/config/output_directory.h"
@@ -74,32 +72,22 @@ Arguments interpret(const tools::Given& given)
   return arguments;
 }
 
-/// A line on stderr: renewed in place on a terminal, written every few seconds elsewhere.
-class Progress
+std::vector<config::Convergence> compute(const core::SystemParameters& parameters,
+                                         const config::ConvergenceOptions& options)
 {
-public:
-  explicit Progress(std::size_t frequencies) : frequencies_(frequencies)
-  {
-  }
-
-  void operator()(const config::ConvergenceProgress& progress)
-  {
-    const auto now = std::chrono::steady_clock::now();
-    const bool last = progress.frequencies == frequencies_;
-    if (now < next_ && !(last && terminal_))
-    {
-      return;
-    }
-    next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));
-    std::cerr << (terminal_ ? "\r" : "") << progress.runs << " bases computed, " << progress.frequencies << " of "
-              << frequencies_ << " frequencies done" << (terminal_ && !last ? "" : "\n") << std::flush;
-  }
-
-private:
-  std::size_t frequencies_;
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
-};
+  tools::ProgressLine line;
+  const std::size_t frequencies = options.omega_stars.size();
+  return config::converge(parameters, options,
+                          [&](const config::ConvergenceProgress& progress)
+                          {
+                            if (line.due(progress.frequencies == frequencies))
+                            {
+                              line.show(std::to_string(progress.runs) + " bases computed, " +
+                                        std::to_string(progress.frequencies) + " of " + std::to_string(frequencies) +
+                                        " frequencies done");
+                            }
+                          });
+}
 
 void run(const Arguments& arguments)
 {
@@ -110,7 +98,7 @@ void run(const Arguments& arguments)
     out.emplace(*arguments.out);
   }
   const config::ConvergenceOptions& convergence = arguments.convergence;
-  const auto results = config::converge(parameters, convergence, Progress(convergence.omega_stars.size()));
+  const auto results = compute(parameters, convergence);
   if (out)
   {
     out->write({config::convergenceTable(results)});

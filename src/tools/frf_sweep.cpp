@@ -1,9 +1,6 @@
 // The repetitive impact frequency response of a configuration, straight from the core.
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <iomanip>
@@ -15,6 +12,7 @@
 #include <vector>
 
 #include "command_line.h"
+#include "progress_line.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/model_summary.h"
 #include "vibro_impact/config/number.h"
@@ -93,32 +91,20 @@ Arguments interpret(const tools::Given& given)
   return arguments;
 }
 
-/// A line on stderr: renewed in place on a terminal, written every few seconds elsewhere.
-class Progress
+std::vector<core::Response> compute(const std::shared_ptr<const core::SwitchedModel>& model,
+                                    const config::SweepOptions& sweep)
 {
-public:
-  explicit Progress(int points) : points_(static_cast<std::size_t>(points))
-  {
-  }
-
-  void operator()(std::size_t done)
-  {
-    const auto now = std::chrono::steady_clock::now();
-    const bool last = done == points_;
-    if (now < next_ && !(last && terminal_))
-    {
-      return;
-    }
-    next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));
-    std::cerr << (terminal_ ? "\r" : "") << done << " of " << points_ << " frequencies"
-              << (terminal_ && !last ? "" : "\n") << std::flush;
-  }
-
-private:
-  std::size_t points_;
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
-};
+  tools::ProgressLine line;
+  const auto points = static_cast<std::size_t>(sweep.points);
+  return config::sweep(model, sweep,
+                       [&](std::size_t done)
+                       {
+                         if (line.due(done == points))
+                         {
+                           line.show(std::to_string(done) + " of " + std::to_string(points) + " frequencies");
+                         }
+                       });
+}
 
 void report(const config::ModelSummary& model, const std::vector<core::Response>& responses, const std::string& out)
 {
@@ -161,7 +147,7 @@ void run(const Arguments& arguments)
 {
   const auto model = std::make_shared<const core::SwitchedModel>(config::loadFile(arguments.configuration));
   const config::OutputDirectory out(arguments.out);
-  const auto responses = config::sweep(model, arguments.sweep, Progress(arguments.sweep.points));
+  const auto responses = compute(model, arguments.sweep);
   const config::ModelSummary summary = config::summarize(*model);
   out.write({config::responseTable(responses), config::impactTable(responses), config::modelTable(summary)});
   report(summary, responses, arguments.out);

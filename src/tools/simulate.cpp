@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -18,6 +18,7 @@
 #include <console_bridge/console.h>
 
 #include "command_line.h"
+#include "progress_line.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/output_directory.h"
 #include "vibro_impact/config/sampled_excitation.h"
@@ -177,36 +178,17 @@ Arguments interpret(const tools::Given& given)
   return arguments;
 }
 
-/// A line on stderr: renewed in place on a terminal, written every few seconds elsewhere.
-class Progress
+/// What tells on `line` how much is done.
+config::RunProgress telling(tools::ProgressLine& line)
 {
-public:
-  ~Progress()
+  return [&line](double share)
   {
-    if (terminal_ && shown_)
+    if (line.due(false))
     {
-      std::cerr << std::endl;
+      line.show("simulated " + std::to_string(static_cast<int>(100.0 * share)) + " %");
     }
-  }
-
-  void operator()(double share)
-  {
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_)
-    {
-      return;
-    }
-    next_ = now + (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000));
-    shown_ = true;
-    std::cerr << (terminal_ ? "\r" : "") << "simulated " << static_cast<int>(100.0 * share) << " %"
-              << (terminal_ ? "" : "\n") << std::flush;
-  }
-
-private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  bool shown_ = false;
-  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
-};
+  };
+}
 
 /// The script that draws, which is installed beside this program.
 std::string plotScript()
@@ -248,9 +230,9 @@ config::SimulatedRun simulateBag(const Arguments& arguments, const graph::Record
     parameters = history.parameters();
     changes.assign(std::next(history.contacts().begin()), history.contacts().end());
   }
-  Progress progress;
-  const graph::RecordingSimulation simulation = graph::simulateRecording(
-      recording, parameters, changes, graph::StreamLimits{}, arguments.history, [&](double share) { progress(share); });
+  tools::ProgressLine line;
+  const graph::RecordingSimulation simulation =
+      graph::simulateRecording(recording, parameters, changes, graph::StreamLimits{}, arguments.history, telling(line));
   std::cout << simulation.samples << " samples taken, " << simulation.bridged << " bridged, " << simulation.restarts
             << " restarts from rest, " << simulation.refused << " blocks refused\n";
   if (!simulation.first_irregularity.empty())
@@ -263,8 +245,8 @@ config::SimulatedRun simulateBag(const Arguments& arguments, const graph::Record
 config::SimulatedRun simulate(const Arguments& arguments, const std::optional<config::SampledExcitation>& excitation)
 {
   const auto model = std::make_shared<const core::SwitchedModel>(config::loadFile(*arguments.configuration));
-  Progress progress;
-  const auto tell = [&](double share) { progress(share); };
+  tools::ProgressLine line;
+  const config::RunProgress tell = telling(line);
   if (excitation)
   {
     return config::simulateSampled(model, *excitation, arguments.initial, arguments.history, tell);
