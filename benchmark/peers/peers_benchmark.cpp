@@ -25,8 +25,8 @@
 #include "peer.h"
 #include "reference.h"
 #include "vibro_impact/config/configuration.h"
-#include "vibro_impact/core/harmonic_simulation.h"
 #include "vibro_impact/core/beam.h"
+#include "vibro_impact/core/harmonic_simulation.h"
 
 namespace
 {

@@ -284,7 +284,7 @@ private:
     readNumbers(entries, name, beam_fields, beam);
     if (kind == "section")
     {
-      readSection(entries, name, kind, section_fields, beam.cross_section.emplace<core::Section>());
+      readSection(entries, name, "section", section_fields, beam.cross_section.emplace<core::Section>());
       for (const auto& [key, member] : {beam_fields[0], beam_fields[1]})
       {
         beam.*member = 0.0;
@@ -302,7 +302,7 @@ private:
     {
       renamed_[name + ".height"] = name + ".rectangle.height";
       renamed_[name + ".width"] = name + ".rectangle.width";
-      readSection(entries, name, kind, rectangle_fields, beam.cross_section.emplace<core::Rectangle>());
+      readSection(entries, name, "rectangle", rectangle_fields, beam.cross_section.emplace<core::Rectangle>());
     }
     else
     {
