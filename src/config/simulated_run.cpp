@@ -23,7 +23,9 @@ const std::vector<Column<HistoryRow>> history_columns = {
     {"energy_structure1", &HistoryRow::energy_structure1},
     {"energy_structure2", &HistoryRow::energy_structure2},
     {"energy_spring", &HistoryRow::energy_spring},
+    {"energy_left_out", &HistoryRow::energy_left_out},
     {"base_work", &HistoryRow::base_work},
+    {"contact_work", &HistoryRow::contact_work},
     {"dissipated_free", &HistoryRow::dissipated_free},
     {"dissipated_contact", &HistoryRow::dissipated_contact},
     {"mapping_loss", &HistoryRow::mapping_loss},
@@ -68,7 +70,9 @@ OutputFile summaryTable(const SimulatedRun& run)
   add("energy_structure1", run.energy.structure1);
   add("energy_structure2", run.energy.structure2);
   add("energy_spring", run.energy.spring);
+  add("energy_left_out", run.energy.left_out);
   add("base_work", run.energy.work);
+  add("contact_work", run.energy.contact_work);
   add("dissipated_free", run.energy.dissipated_free);
   add("dissipated_contact", run.energy.dissipated_contact);
   add("mapping_loss", run.energy.mapping_loss);
@@ -121,7 +125,9 @@ void RunRecorder::onSample(const core::HistorySample& sample)
   row.energy_structure1 = sample.energy.structure1;
   row.energy_structure2 = sample.energy.structure2;
   row.energy_spring = sample.energy.spring;
+  row.energy_left_out = sample.energy.left_out;
   row.base_work = sample.energy.work;
+  row.contact_work = sample.energy.contact_work;
   row.dissipated_free = sample.energy.dissipated_free;
   row.dissipated_contact = sample.energy.dissipated_contact;
   row.mapping_loss = sample.energy.mapping_loss;

@@ -321,6 +321,10 @@ void SwitchedMotion::takeOver(SwitchedMotion& previous, ImpactSink& sink)
     to.velocity = from.velocity;
   }
   in_coordinates_ = true;
+  if (!model_->lossless())
+  {
+    gap_ = linearState(state_).gap + linearState(state_).contact_deflection.matrix().dot(to.displacement);
+  }
   takeOverAccount(previous);
 
   if (previous.state_ == 1 && state_ == 0)

@@ -201,6 +201,11 @@ TEST(SimulateHarmonic, ClosesItsEnergyAccount)
   for (const HistoryRow& row : run.history)
   {
     EXPECT_LT(std::abs(row.energy_residual), 1e-9 * run.energy.turnover);
+    // The columns are the whole account.
+    const double stored = row.energy_structure1 + row.energy_structure2 + row.energy_spring + row.energy_left_out;
+    const double lost = row.dissipated_free + row.dissipated_contact + row.mapping_loss;
+    EXPECT_NEAR(run.energy.initial + row.base_work + row.contact_work - lost - stored, row.energy_residual,
+                1e-15 * run.energy.turnover);
   }
   const HistoryRow& last = run.history.back();
   EXPECT_EQ(last.base_work, run.energy.work);
@@ -290,7 +295,7 @@ TEST(RunTables, ReadBackToTheSameBits)
   EXPECT_EQ(files[1].name, "impacts.csv");
   EXPECT_EQ(files[2].name, "run.csv");
   const auto history = columns(files[0]);
-  ASSERT_EQ(history.size(), 14u);
+  ASSERT_EQ(history.size(), 16u);
   for (std::size_t i = 0; i < run.history.size(); ++i)
   {
     EXPECT_EQ(history.at("time")[i], run.history[i].time);

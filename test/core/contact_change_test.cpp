@@ -322,6 +322,34 @@ TEST(ContactChange, OfTheClearanceAloneLosesNothingInTheConjoinedBasis)
   EXPECT_EQ(velocity[1], velocity[0]);
 }
 
+TEST(ContactChange, TheEnergyAccountCloses)
+{
+  const std::vector<Change> changes = {{150, 1.0, 0.2 * typical_gap},  {310, 2.0, -0.2 * typical_gap},
+                                       {420, 0.3, -0.5 * typical_gap}, {505, 0.3, 0.1 * typical_gap},
+                                       {560, 4.0, -0.3 * typical_gap}, {700, 1.0, 0.0},
+                                       {760, 1.0, -3.0 * typical_gap}, {850, 1.5, 0.05 * typical_gap}};
+  for (const BasisParameters& basis : {BasisParameters(AttachmentBasis{3}), BasisParameters(ConjoinedBasis{2, 2})})
+  {
+    const SystemParameters parameters = limitingCase(1000.0, basis);
+    Motion run(modelWith(parameters, 1.0, -0.1 * typical_gap));
+    for (const Change& change : changes)
+    {
+      run.advanceTo(change.sample);
+      const EnergyAccount before = run.simulation.energyAccount();
+      EXPECT_LT(before.closure(), 1.0e-9) << "sample " << change.sample;
+      run.simulation.setModel(modelWith(parameters, change.stiffness_factor, change.clearance), run.recorder);
+      const EnergyAccount after = run.simulation.energyAccount();
+      EXPECT_LT(after.closure(), 1.0e-9) << "sample " << change.sample;
+      EXPECT_EQ(after.work, before.work);
+    }
+    run.advanceTo(1000);
+    const EnergyAccount account = run.simulation.energyAccount();
+    EXPECT_LT(account.closure(), 1.0e-9);
+    EXPECT_NE(account.contact_work, 0.0);
+    EXPECT_EQ(account.mapping_loss == 0.0, std::holds_alternative<AttachmentBasis>(basis));
+  }
+}
+
 TEST(ContactChange, OtherStructuresAreRefused)
 {
   SystemParameters parameters = undamped();

@@ -174,14 +174,16 @@ TEST_F(SimulatorStatisticsTest, tellsTheEnergyAccount)
 {
   vibro_impact::core::EnergyAccount account;
   account.structure1 = 0.25;
-  account.work = 1.0;
+  account.work = 0.75;
+  account.contact_work = 0.25;
   account.dissipated_free = 0.5;
   account.dissipated_contact = 0.125;
   account.turnover = 2.0;
   vibro_impact::graph::report(account, status_);
   EXPECT_EQ(value("Energy in structure 1 (J)"), "0.25");
   EXPECT_EQ(value("Energy in the spring (J)"), "0");
-  EXPECT_EQ(value("Work of the base (J)"), "1");
+  EXPECT_EQ(value("Work of the base (J)"), "0.75");
+  EXPECT_EQ(value("Work of changes of the contact (J)"), "0.25");
   EXPECT_EQ(value("Dissipated free (J)"), "0.5");
   EXPECT_EQ(value("Dissipated in contact (J)"), "0.125");
   EXPECT_EQ(value("Energy account closes to"), "0.0625");

@@ -30,7 +30,9 @@ struct HistoryRow
   double energy_structure1 = 0.0;  ///< EnergyAccount::structure1 and so on, J
   double energy_structure2 = 0.0;
   double energy_spring = 0.0;
+  double energy_left_out = 0.0;
   double base_work = 0.0;  ///< since the run began, as all that follows
+  double contact_work = 0.0;
   double dissipated_free = 0.0;
   double dissipated_contact = 0.0;
   double mapping_loss = 0.0;
