@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "finite_element_beam.h"
 #include "reference_system.h"
 
@@ -14,8 +15,6 @@ using namespace vibro_impact::core;
 
 namespace
 {
-constexpr double pi = 3.14159265358979323846;
-
 BeamParameters beamWithContactAt(double share)
 {
   BeamParameters parameters = paperBeam();

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "direct_integrator.h"
 #include "reference_system.h"
 #include "switched_motion.h"
@@ -22,15 +23,6 @@ namespace
 {
 constexpr double sample_period = 2.0e-5;
 constexpr double typical_gap = 1.0e-5;  // m, at the drive below
-
-struct Recorder : ImpactSink
-{
-  std::vector<Impact> impacts;
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-};
 
 SystemParameters undamped(const BasisParameters& basis = AttachmentBasis{3})
 {

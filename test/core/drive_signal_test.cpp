@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "common.h"
 #include "vibro_impact/core/drive_signal.h"
 #include "vibro_impact/core/quotient.h"
 
 namespace
 {
 using namespace vibro_impact::core;
-
-constexpr double pi = 3.14159265358979323846;
 
 std::vector<double> generate(const DriveSignal& signal, std::uint64_t first, std::size_t count)
 {

@@ -8,14 +8,13 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "played_signal.h"
 
 namespace vibro_impact::core
 {
 namespace
 {
-constexpr double two_pi = 6.283185307179586476925286766559;
-
 struct Expected
 {
   double frequency_hz;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "vibro_impact/core/harmonic_simulation.h"
 #include "vibro_impact/core/simulation.h"
@@ -17,8 +18,6 @@ namespace vibro_impact::core
 {
 namespace
 {
-constexpr double two_pi = 6.28318530717958647693;
-
 /// The sums over all episodes, cut short or not.
 class Totals : public ImpactSink
 {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "independent_integrator.h"
 #include "switched_motion.h"
 #include "vibro_impact/core/switched_model.h"
@@ -14,18 +15,6 @@ namespace vibro_impact::core
 {
 namespace
 {
-constexpr double pi = 3.14159265358979323846;
-
-class Recorder : public ImpactSink
-{
-public:
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-  std::vector<Impact> impacts;
-};
-
 constexpr double mass = 4.0;          // kg
 constexpr double stiffness = 1600.0;  // N/m: 20 rad/s on the stop
 constexpr double omega = 20.0;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "vibro_impact/core/beam.h"
 #include "vibro_impact/core/harmonic_simulation.h"
@@ -18,16 +19,6 @@ namespace vibro_impact::core
 {
 namespace
 {
-class Recorder : public ImpactSink
-{
-public:
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-  std::vector<Impact> impacts;
-};
-
 SystemParameters identicalBeams(const BasisParameters& basis)
 {
   SystemParameters parameters = limitingCase(1000.0, basis);
@@ -71,8 +62,8 @@ TEST_P(History, doesNotDisturbTheMotion)
   for (std::size_t i = 0; i < history.size(); ++i)
   {
     const double cycles = static_cast<double>(i + 1) / 37.0;
-    EXPECT_NEAR(history[i].time * frequency, 2.0 * M_PI * cycles, 1e-12 * cycles);
-    EXPECT_NEAR(history[i].acceleration, -10.0 * std::cos(2.0 * M_PI * cycles), 1e-11);
+    EXPECT_NEAR(history[i].time * frequency, two_pi * cycles, 1e-12 * cycles);
+    EXPECT_NEAR(history[i].acceleration, -10.0 * std::cos(two_pi * cycles), 1e-11);
   }
   EXPECT_EQ(history.back().gap, observed.sample().gap);
 }

@@ -12,6 +12,7 @@
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 
+#include "common.h"
 #include "vibro_impact/core/switched_model.h"
 
 namespace vibro_impact::core
@@ -39,7 +40,6 @@ public:
   {
     for (const LinearState* linear : {&model_->free(), &model_->contact()})
     {
-      constexpr double two_pi = 6.28318530717958647693;
       longest_step_ = std::min(longest_step_, 0.12 * two_pi / linear->frequency.maxCoeff());
     }
   }

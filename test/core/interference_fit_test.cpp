@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include "common.h"
 #include "direct_integrator.h"
 #include "reference_system.h"
 #include "switched_motion.h"
@@ -24,17 +25,7 @@ namespace vibro_impact::core
 {
 namespace
 {
-constexpr double two_pi = 6.28318530717958647693;
 constexpr double interference = 1.0e-6;  // m
-
-struct Recorder : ImpactSink
-{
-  std::vector<Impact> impacts;
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-};
 
 struct Case
 {

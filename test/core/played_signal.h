@@ -5,6 +5,8 @@
 #include <random>
 #include <vector>
 
+#include "common.h"
+
 namespace vibro_impact::core
 {
 /// A drive signal with known steps, continuous in phase: what a shaker would play, and what its accelerometer would see
@@ -110,8 +112,6 @@ public:
   }
 
 private:
-  static constexpr double two_pi = 6.283185307179586476925286766559;
-
   double nextTime() const
   {
     return static_cast<double>(samples_.size()) / sample_rate_;

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "switched_motion.h"
 #include "vibro_impact/core/parameters.h"
@@ -20,8 +21,6 @@ namespace vibro_impact::core
 {
 namespace
 {
-constexpr double two_pi = 6.28318530717958647693;
-
 class Dice
 {
 public:

@@ -5,11 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
+
 using namespace vibro_impact::core;
 
 namespace
 {
-constexpr double two_pi = 6.28318530717958647693;
 constexpr double cycle = 0.01;
 
 DriveStep stepOf(int cycles)

@@ -7,12 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
+
 namespace vibro_impact::core
 {
 namespace
 {
-constexpr double pi = 3.14159265358979323846;
-
 struct Signal
 {
   double frequency = 2.0 * pi * 271.3;

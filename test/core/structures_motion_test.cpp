@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "independent_integrator.h"
 #include "switched_motion.h"
 #include "vibro_impact/core/switched_model.h"
@@ -14,18 +15,6 @@ namespace vibro_impact::core
 {
 namespace
 {
-constexpr double pi = 3.14159265358979323846;
-
-class Recorder : public ImpactSink
-{
-public:
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-  std::vector<Impact> impacts;
-};
-
 /// Of unit length, bending stiffness and mass.
 BeamParameters unitBeam(End first, End last, double contact)
 {

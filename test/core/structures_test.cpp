@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "vibro_impact/core/beam.h"
 #include "vibro_impact/core/modal_table.h"
@@ -13,8 +14,6 @@ using namespace vibro_impact::core;
 
 namespace
 {
-constexpr double two_pi = 6.28318530717958647692;
-
 BeamParameters beamWithEnds(End first, End last, double share)
 {
   BeamParameters beam = paperBeam();

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "vibro_impact/core/simulation.h"
 
@@ -14,16 +15,6 @@ namespace vibro_impact::core
 {
 namespace
 {
-class Recorder : public ImpactSink
-{
-public:
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-  std::vector<Impact> impacts;
-};
-
 struct Answer
 {
   std::vector<double> gap, force;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "vibro_impact/core/beam.h"
 
@@ -29,7 +30,6 @@ double characteristicResidual(const SystemParameters& parameters, double omega)
 /// bisection.
 double symmetricRoot(double relative_stiffness)
 {
-  constexpr double pi = 3.14159265358979323846;
   const auto f = [relative_stiffness](double l)
   { return 1.0 + relative_stiffness * (std::tan(0.5 * l) - std::tanh(0.5 * l)) / (4.0 * l * l * l); };
   double low = pi * (1.0 + 1e-12);

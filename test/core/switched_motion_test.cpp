@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common.h"
 #include "reference_system.h"
 #include "vibro_impact/core/beam.h"
 #include "vibro_impact/core/harmonic_simulation.h"
@@ -19,18 +20,6 @@ using namespace vibro_impact::core;
 
 namespace
 {
-constexpr double pi = 3.14159265358979323846;
-
-class Recorder : public ImpactSink
-{
-public:
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-  std::vector<Impact> impacts;
-};
-
 std::shared_ptr<const SwitchedModel> makeModel(const SystemParameters& parameters)
 {
   return std::make_shared<const SwitchedModel>(parameters);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "../config/temporary_directory.h"
+#include "../core/common.h"
 #include "synthetic_run.h"
 #include "vibro_impact/config/response_table.h"
 #include "vibro_impact/core/response.h"
@@ -23,12 +24,12 @@ namespace vibro_impact::graph
 {
 namespace
 {
+using core::two_pi;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
 constexpr double sample_rate = 20000.0;
-constexpr double two_pi = 6.283185307179586476925286766559;
 
 core::SystemParameters limitingCase()
 {

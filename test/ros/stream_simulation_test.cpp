@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "../core/common.h"
 #include "vibro_impact/core/simulation.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
@@ -110,14 +111,7 @@ std::uint64_t openAfter(std::uint64_t at_least)
 
 TEST(StreamSimulation, answersAsTheCoreDoes)
 {
-  struct Sink : core::ImpactSink
-  {
-    std::vector<core::Impact> impacts;
-    void onImpact(const core::Impact& impact) override
-    {
-      impacts.push_back(impact);
-    }
-  } sink;
+  core::Recorder sink;
   const Samples excitation = block(1000, 20000);
   std::vector<double> gap(20000);
   std::vector<double> force(20000);

@@ -17,6 +17,7 @@
 #include <vibro_impact/Impact.h>
 #include <vibro_impact/ModelInfo.h>
 
+#include "../core/common.h"
 #include "../core/played_signal.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/core/simulation.h"
@@ -40,15 +41,7 @@ struct SyntheticRun
   SyntheticRun(core::SystemParameters parameters, const std::vector<double>& samples, double sample_period,
                const std::map<std::uint64_t, core::ContactParameters>& changes, std::size_t block = 400)
   {
-    struct Sink : core::ImpactSink
-    {
-      void onImpact(const core::Impact& impact) override
-      {
-        impacts.push_back(impact);
-      }
-      std::vector<core::Impact> impacts;
-    } sink;
-
+    core::Recorder sink;
     const auto model = std::make_shared<const core::SwitchedModel>(parameters);
     infos.emplace_back();
     toMessage(*model, config::toYaml(parameters), "0.0.0", infos.back());

@@ -15,6 +15,7 @@
 
 #include <Eigen/Core>
 
+#include "common.h"
 #include "independent_integrator.h"
 #include "reference_system.h"
 #include "vibro_impact/core/beam.h"
@@ -28,22 +29,10 @@ namespace
 {
 using namespace vibro_impact::core;
 
-constexpr double pi = 3.14159265358979323846;
-
 void print(const std::string& name, double value)
 {
   std::printf("%s %.17g\n", name.c_str(), value);
 }
-
-class Recorder : public ImpactSink
-{
-public:
-  void onImpact(const Impact& impact) override
-  {
-    impacts.push_back(impact);
-  }
-  std::vector<Impact> impacts;
-};
 
 using ModelPointer = std::shared_ptr<const SwitchedModel>;
 
