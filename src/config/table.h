@@ -1,10 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -98,20 +95,11 @@ std::string writeTable(const std::vector<Column<Row>>& columns, const std::vecto
 template <typename Row>
 std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row>>& columns)
 {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored))
-  {
-    throw Error(path + ": cannot be read: it is a directory");
-  }
-  errno = 0;
-  std::ifstream file(path);
-  if (!file)
-  {
-    throw Error(path + ": cannot be read: " + std::strerror(errno));
-  }
+  std::ifstream file = openTextFile(path);
   std::string line;
   if (!std::getline(file, line))
   {
+    requireWhollyRead(file, path);
     throw Error(path + ": is empty: must be a table that starts with the names of its columns");
   }
   const std::vector<std::string> names = splitCells(line);
@@ -158,6 +146,7 @@ std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row
     }
     rows.push_back(row);
   }
+  requireWhollyRead(file, path);
   return rows;
 }
 

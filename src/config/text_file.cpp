@@ -3,36 +3,54 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <system_error>
 
 #include "vibro_impact/config/error.h"
 
 namespace vibro_impact::config
 {
-std::string readTextFile(const std::string& path, std::size_t largest, const std::string& none)
+namespace
 {
-  const auto fail = [&path](const std::string& reason) { throw Error(path + ": cannot be read: " + reason); };
+[[noreturn]] void fail(const std::string& path, const std::string& reason)
+{
+  throw Error(path + ": cannot be read: " + reason);
+}
+}  // namespace
+
+std::ifstream openTextFile(const std::string& path)
+{
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
   {
-    fail("it is a directory");
+    fail(path, "it is a directory");
   }
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file)
   {
-    fail(std::strerror(errno));
+    fail(path, std::strerror(errno));
   }
-  std::string text(largest + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return file;
+}
+
+void requireWhollyRead(const std::ifstream& file, const std::string& path)
+{
   if (file.bad())
   {
-    fail(std::strerror(errno));
+    fail(path, std::strerror(errno));
   }
+}
+
+std::string readTextFile(const std::string& path, std::size_t largest, const std::string& none)
+{
+  std::ifstream file = openTextFile(path);
+  std::string text(largest + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  requireWhollyRead(file, path);
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > largest)
   {
-    fail("it is larger than " + std::to_string(largest) + " bytes, which " + none);
+    fail(path, "it is larger than " + std::to_string(largest) + " bytes, which " + none);
   }
   return text;
 }

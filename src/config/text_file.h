@@ -1,11 +1,18 @@
 #pragma once
 
 #include <cstddef>
+#include <fstream>
 #include <string>
 #include <vector>
 
 namespace vibro_impact::config
 {
+/// Opens a file to be read. Throws Error, naming the path, if it cannot be.
+std::ifstream openTextFile(const std::string& path);
+
+/// Throws Error, naming the path, if something went wrong while `file` was read.
+void requireWhollyRead(const std::ifstream& file, const std::string& path);
+
 /// A whole file. Throws Error, naming the path, if it cannot be read or is larger than `largest` bytes, "which `none`".
 std::string readTextFile(const std::string& path, std::size_t largest, const std::string& none);
 

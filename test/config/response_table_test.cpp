@@ -180,6 +180,8 @@ TEST(ResponseTable, SaysWhatIsWrongAndWhere)
   const TemporaryDirectory directory;
   EXPECT_THAT(complaint([&] { readImpactTable(directory.path()); }), HasSubstr("it is a directory"));
   EXPECT_THAT(complaint([&] { readImpactTable(directory.path() + "/no.csv"); }), HasSubstr("No such file"));
+  // A file that opens and then cannot be read, as on a bad disk.
+  EXPECT_EQ(complaint([] { readImpactTable("/proc/self/mem"); }), "/proc/self/mem: cannot be read: Input/output error");
 }
 
 TEST(OutputDirectory, ReplacesFilesAndLeavesNothingElse)
