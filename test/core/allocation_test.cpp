@@ -110,3 +110,23 @@ TEST(Allocations, noneInTheAdvanceUnderAHarmonicDrive)
     EXPECT_GT(counter.count, 100);
   }
 }
+
+TEST(Allocations, noneInTheAdvanceThatWritesAHistory)
+{
+  constexpr std::size_t samples_per_cycle = 64;
+  constexpr std::uint64_t cycles = 200;
+  for (const BasisParameters& basis : {BasisParameters(AttachmentBasis{5}), BasisParameters(ConjoinedBasis{3, 2})})
+  {
+    const auto model = std::make_shared<const SwitchedModel>(limitingCase(1000.0, basis));
+    HarmonicSimulation simulation(model);
+    simulation.setDrive(1.6 * model->scales().frequency, 10.0);
+    std::vector<HistorySample> history(cycles * samples_per_cycle);
+    Counter counter;
+    const std::size_t before = allocations;
+    simulation.advance(cycles, counter, samples_per_cycle, history.data());
+    const std::size_t after = allocations;
+    EXPECT_EQ(after - before, 0u);
+    EXPECT_GT(counter.count, 100);
+    EXPECT_GT(history.back().time, 0.0);
+  }
+}
