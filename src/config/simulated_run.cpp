@@ -189,6 +189,7 @@ SimulatedRun simulateHarmonic(const std::shared_ptr<const core::SwitchedModel>& 
     }
     progress(static_cast<double>(i + 1) / static_cast<double>(options.cycles));
   }
+  simulation.finish(recorder);
   recorder.run.period = periodOf(recorder.run, *model, simulation.time());
   return std::move(recorder.run);
 }

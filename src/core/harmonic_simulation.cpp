@@ -101,6 +101,11 @@ void HarmonicSimulation::advance(std::uint64_t cycles, ImpactSink& sink, std::si
   implementation_->motion.recordHistory(nullptr, 0);
 }
 
+void HarmonicSimulation::finish(ImpactSink& sink)
+{
+  implementation_->motion.interrupt(sink);
+}
+
 HistorySample HarmonicSimulation::sample() const
 {
   return implementation_->motion.sample();

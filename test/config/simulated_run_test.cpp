@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../core/common.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/config/number.h"
@@ -21,7 +22,7 @@ namespace vibro_impact::config
 {
 namespace
 {
-constexpr double two_pi = 6.28318530717958647693;
+using core::two_pi;
 
 core::SystemParameters shipped(const std::string& name)
 {
@@ -39,15 +40,6 @@ std::shared_ptr<const core::SwitchedModel> limitingCase()
   parameters.basis = core::AttachmentBasis{5};
   return model(parameters);
 }
-
-struct Impacts : core::ImpactSink
-{
-  void onImpact(const core::Impact& impact) override
-  {
-    list.push_back(impact);
-  }
-  std::vector<core::Impact> list;
-};
 
 void ignore(double /*share*/)
 {
@@ -115,13 +107,14 @@ TEST(SimulateHarmonic, HasTheImpactsOfTheCore)
   core::HarmonicSimulation simulation(beams);
   const double frequency = 1.6 * beams->scales().frequency;
   simulation.setDrive(frequency, 10.0);
-  Impacts impacts;
-  simulation.advance(150, impacts);
-  ASSERT_EQ(run.impacts.size(), impacts.list.size());
+  core::Recorder recorder;
+  simulation.advance(150, recorder);
+  simulation.finish(recorder);
+  ASSERT_EQ(run.impacts.size(), recorder.impacts.size());
   ASSERT_GT(run.impacts.size(), 140u);
-  for (std::size_t i = 0; i < impacts.list.size(); ++i)
+  for (std::size_t i = 0; i < recorder.impacts.size(); ++i)
   {
-    const core::Impact& expected = impacts.list[i];
+    const core::Impact& expected = recorder.impacts[i];
     EXPECT_EQ(run.impacts[i].number, expected.number);
     EXPECT_EQ(run.impacts[i].omega_star, 1.6);
     EXPECT_EQ(run.impacts[i].onset_s, static_cast<double>(expected.interval) * (two_pi / frequency) + expected.offset);
@@ -130,6 +123,46 @@ TEST(SimulateHarmonic, HasTheImpactsOfTheCore)
   }
   EXPECT_EQ(run.period, 1);
   EXPECT_EQ(value(run, "period"), 1.0);
+}
+
+TEST(SimulateHarmonic, ListsAnEpisodeThatIsOpenAtTheEndAsCutShort)
+{
+  // Pressed together: one episode from the start of the run to its end.
+  core::SystemParameters parameters = shipped("interference_fit.yaml");
+  const auto pressed = model(parameters);
+  HarmonicRunOptions options;
+  options.omega_star = 0.5;
+  options.acceleration = 1.0e-3;
+  options.cycles = 20;
+  const SimulatedRun whole = simulateHarmonic(pressed, options, std::nullopt, {}, ignore);
+  const double cycle = two_pi / (0.5 * pressed->scales().frequency);
+  ASSERT_EQ(whole.impacts.size(), 1u);
+  EXPECT_TRUE(whole.impacts[0].cut_short);
+  EXPECT_EQ(whole.impacts[0].onset_s, 0.0);
+  EXPECT_NEAR(whole.impacts[0].duration_s, 20.0 * cycle, 1e-9 * cycle);
+  EXPECT_EQ(whole.period, 1);
+
+  // The last of several, at whatever frequency and after as many cycles as there is one.
+  options.acceleration = 10.0;
+  const auto beams = limitingCase();
+  int open = 0;
+  for (const double omega_star : {0.5, 0.8, 1.2, 1.6, 2.0, 2.8})
+  {
+    options.omega_star = omega_star;
+    for (options.cycles = 1; options.cycles <= 5; ++options.cycles)
+    {
+      const SimulatedRun run = simulateHarmonic(beams, options, std::nullopt, {}, ignore);
+      const HistoryRow& end = run.history.back();
+      ASSERT_EQ(run.impacts.back().cut_short, end.in_contact) << omega_star << ", " << options.cycles;
+      if (end.in_contact)
+      {
+        ++open;
+        EXPECT_NEAR(run.impacts.back().onset_s + run.impacts.back().duration_s, end.time, 1e-9 * end.time);
+        EXPECT_EQ(run.impacts.back().separation_speed, 0.0);
+      }
+    }
+  }
+  EXPECT_GT(open, 3);
 }
 
 TEST(SimulateHarmonic, HasAHistoryOfTheWholeRun)
@@ -230,9 +263,9 @@ TEST(SimulateSampled, IsBitForBitWhatASimulationOfBlocksGives)
   core::SampledSimulation simulation(beams, excitation.sample_period);
   std::vector<double> gap(5000);
   std::vector<double> force(5000);
-  Impacts impacts;
-  simulation.advance(excitation.acceleration.data(), 5000, gap.data(), force.data(), impacts);
-  simulation.finish(impacts);
+  core::Recorder recorder;
+  simulation.advance(excitation.acceleration.data(), 5000, gap.data(), force.data(), recorder);
+  simulation.finish(recorder);
   ASSERT_EQ(run.history.size(), 5000u);
   for (std::size_t i = 0; i < 5000; ++i)
   {
@@ -241,13 +274,14 @@ TEST(SimulateSampled, IsBitForBitWhatASimulationOfBlocksGives)
     EXPECT_EQ(run.history[i].acceleration, excitation.acceleration[i]);
     EXPECT_EQ(run.history[i].time, static_cast<double>(i) * 2.0e-5);
   }
-  ASSERT_EQ(run.impacts.size(), impacts.list.size());
+  ASSERT_EQ(run.impacts.size(), recorder.impacts.size());
   ASSERT_GT(run.impacts.size(), 30u);
-  for (std::size_t i = 0; i < impacts.list.size(); ++i)
+  for (std::size_t i = 0; i < recorder.impacts.size(); ++i)
   {
-    EXPECT_EQ(run.impacts[i].onset_s, static_cast<double>(impacts.list[i].interval) * 2.0e-5 + impacts.list[i].offset);
-    EXPECT_EQ(run.impacts[i].impulse, impacts.list[i].impulse);
-    EXPECT_EQ(run.impacts[i].cut_short, impacts.list[i].cut_short);
+    EXPECT_EQ(run.impacts[i].onset_s,
+              static_cast<double>(recorder.impacts[i].interval) * 2.0e-5 + recorder.impacts[i].offset);
+    EXPECT_EQ(run.impacts[i].impulse, recorder.impacts[i].impulse);
+    EXPECT_EQ(run.impacts[i].cut_short, recorder.impacts[i].cut_short);
   }
   EXPECT_LT(run.energy.closure(), 1e-9);
   EXPECT_FALSE(value(run, "omega_star"));

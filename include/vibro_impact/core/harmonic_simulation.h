@@ -47,6 +47,9 @@ public:
   /// in it allocates.
   void advance(std::uint64_t cycles, ImpactSink& sink, std::size_t samples_per_cycle, HistorySample* history);
 
+  /// Reports an open episode to `sink` as cut short, at the end of the drive.
+  void finish(ImpactSink& sink);
+
   /// Now: at the end of the last cycle, or at the start.
   HistorySample sample() const;
 
