@@ -351,14 +351,29 @@ BasisRun runBasis(const core::SystemParameters& parameters, int modes, double om
   return run;
 }
 
+// Coordinates of the largest basis; 0 if so many modes cannot be had. Throws where a drive meets an undamped resonance:
+// it has all natural frequencies of S0 that a smaller one has, which so need not be computed in vain.
+Eigen::Index checkLargestBasis(core::SystemParameters parameters, const ConvergenceOptions& options)
+{
+  parameters.basis = withModes(parameters.basis, options.most_modes);
+  if (!core::findFaults(parameters).empty())
+  {
+    return 0;
+  }
+  const auto model = std::make_shared<const core::SwitchedModel>(parameters);
+  core::HarmonicSimulation simulation(model);
+  for (const double omega_star : options.omega_stars)
+  {
+    simulation.setDrive(omega_star * model->scales().frequency, options.acceleration);
+  }
+  return model->free().size();
+}
+
 Convergence convergeAt(core::SystemParameters parameters, double omega_star, const ConvergenceOptions& options,
-                       std::atomic<std::size_t>& runs)
+                       Eigen::Index most_coordinates, std::atomic<std::size_t>& runs)
 {
   Convergence result;
   result.omega_star = omega_star;
-  parameters.basis = withModes(parameters.basis, options.most_modes);
-  const Eigen::Index most_coordinates =
-      core::findFaults(parameters).empty() ? core::SwitchedModel(parameters).free().size() : 0;
   for (int modes = 1; !result.settled; modes = std::min(nextModes(modes), options.most_modes))
   {
     parameters.basis = withModes(parameters.basis, modes);
@@ -479,6 +494,7 @@ double standardErrorsApart(const ImpactStatistics& one, const ImpactStatistics& 
 std::vector<Convergence> converge(const core::SystemParameters& parameters, const ConvergenceOptions& options,
                                   const std::function<void(const ConvergenceProgress&)>& progress)
 {
+  const Eigen::Index most_coordinates = checkLargestBasis(parameters, options);
   std::vector<Convergence> results(options.omega_stars.size());
   std::atomic<std::size_t> next{0};
   std::atomic<std::size_t> done{0};
@@ -489,7 +505,7 @@ std::vector<Convergence> converge(const core::SystemParameters& parameters, cons
     {
       for (std::size_t index = next++; index < results.size(); index = next++)
       {
-        results[index] = convergeAt(parameters, options.omega_stars[index], options, runs);
+        results[index] = convergeAt(parameters, options.omega_stars[index], options, most_coordinates, runs);
         ++done;
       }
     }

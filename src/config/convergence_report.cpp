@@ -163,14 +163,29 @@ std::string withoutPeriod(const BasisRun& run)
          "period or a slow transient. Its impacts have no partners to be compared with, its statistics have.";
 }
 
+// Whether what has settled is the basis of all modes that there are, with which no other agrees.
+bool hasNoneToAgreeWith(const Convergence& result)
+{
+  return *result.settled + 1 == result.runs.size();
+}
+
 std::string settledText(const core::SystemParameters& parameters, const ConvergenceOptions& options,
                         const Convergence& result)
 {
   const BasisRun& run = result.runs[*result.settled];
+  const std::string period = run.period == 0 ? withoutPeriod(run) + "\n" : std::string();
+  if (hasNoneToAgreeWith(result))
+  {
+    return period + basisOf(parameters, run.modes) +
+           " has all modes that the structures have: there is no larger basis" +
+           (result.runs.size() > 1 ? ", and no smaller one agrees with it to " + rounded(options.accuracy, 3)
+                                   : ", nor a smaller one, to compare it with") +
+           ". Whether a modal table lists modes enough, a longer one can tell.\n";
+  }
   const std::string from = basisOf(parameters, run.modes) + " on";
   if (run.period == 0)
   {
-    return withoutPeriod(run) + "\nStatistics agree from " + from + ", to " + rounded(options.accuracy, 3) +
+    return period + "Statistics agree from " + from + ", to " + rounded(options.accuracy, 3) +
            " or within their sampling uncertainty (standard errors up to " +
            rounded(100.0 * greatestRelativeError(*run.statistics), 2) + " %).\n";
   }
@@ -264,9 +279,11 @@ std::string convergenceReport(const core::SystemParameters& parameters, const Co
   text += lossText(results);
   if (greatest != nullptr)
   {
-    text += "Smallest basis for an accuracy of " + rounded(options.accuracy, 3) + ": " +
-            basisOf(parameters, greatest->runs[*greatest->settled].modes) +
-            (results.size() > 1 ? ", which omega* " + rounded(greatest->omega_star, 15) + " asks for" : "") + ".\n";
+    text +=
+        (hasNoneToAgreeWith(*greatest) ? "Best basis there is: "
+                                       : "Smallest basis for an accuracy of " + rounded(options.accuracy, 3) + ": ") +
+        basisOf(parameters, greatest->runs[*greatest->settled].modes) +
+        (results.size() > 1 ? ", which omega* " + rounded(greatest->omega_star, 15) + " asks for" : "") + ".\n";
   }
   if (!unsettled.empty())
   {

@@ -69,6 +69,41 @@ TEST_F(ConvergeTool, SaysThatChaosDoesNotConverge)
   EXPECT_THAT(outcome.out, HasSubstr("Statistics agree from modes_per_beam = 3 on"));
 }
 
+TEST_F(ConvergeTool, SaysThatAModalTableHasNoMoreModes)
+{
+  core::SystemParameters parameters = loadFile(rigid_surface);
+  core::ModalTableParameters table;
+  table.frequency_hz = {8.06743};
+  table.contact_deflection = {1.39758};
+  table.participation = {0.779067};
+  parameters.beam1 = table;
+  parameters.contact.stiffness = 1.0e4;
+  for (const core::BasisParameters& basis :
+       {core::BasisParameters(core::AttachmentBasis{5}), core::BasisParameters(core::ConjoinedBasis{2, 2})})
+  {
+    parameters.basis = basis;
+    const Outcome outcome = run(directory_.file("one.yaml", toYaml(parameters)) + " --at 1.6");
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_THAT(outcome.out, HasSubstr(" = 1 has all modes that the structures have: there is no larger basis, nor a "
+                                       "smaller one, to compare it with. Whether a modal table lists modes enough, a "
+                                       "longer one can tell.\n"));
+    EXPECT_THAT(outcome.out, HasSubstr("Best basis there is: modes_"));
+    EXPECT_THAT(outcome.out, Not(HasSubstr("Settled")));
+    EXPECT_THAT(outcome.out, Not(HasSubstr("for an accuracy")));
+  }
+
+  table.frequency_hz.push_back(141.563);
+  table.contact_deflection.push_back(-0.986064);
+  table.participation.push_back(0.25315);
+  parameters.beam1 = table;
+  parameters.basis = core::ConjoinedBasis{2, 2};
+  const Outcome outcome = run(directory_.file("two.yaml", toYaml(parameters)) + " --at 1.6 --accuracy 1e-4");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("modes_free = modes_contact = 2 has all modes that the structures have: there is no "
+                        "larger basis, and no smaller one agrees with it to 0.0001."));
+}
+
 TEST_F(ConvergeTool, RefusesABadCommandLine)
 {
   const std::string out = " --out " + results();
@@ -105,6 +140,9 @@ TEST_F(ConvergeTool, RefusesAnUndampedResonance)
   parameters.damping = {};
   const std::string undamped = directory_.file("undamped.yaml", toYaml(parameters));
   expectRefusal(undamped + " --at 1 --out " + results(), 1, "is a natural frequency of an undamped mode");
+  // That of the third mode, before the bases without it are computed: these cycles would take hours.
+  expectRefusal(undamped + " --at 1.2 9 --cycles 1000000000 --out " + results(), 1,
+                "is a natural frequency of an undamped mode");
 }
 
 TEST_F(ConvergeTool, Helps)
