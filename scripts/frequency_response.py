@@ -88,16 +88,15 @@ def read_rows(folder):
 
 
 def read_impacts(folder, rows):
-    """The impacts of impacts.csv; their dimensionless impulse follows from the ratio of both impulses in `rows`."""
-    greatest = max(rows, key=lambda row: abs(row.impulse))
-    if greatest.impulse == 0.0:
-        raise TableError(f"{os.path.join(folder, 'frf.csv')}: no frequency has an impact")
-    scale = greatest.impulse_star / greatest.impulse
+    """The impacts of impacts.csv, none where no row has one; their dimensionless impulse follows from the ratio of both
+    impulses in `rows`."""
     path = os.path.join(folder, "impacts.csv")
-    impacts = [Impact(v["omega_star"], scale * v["impulse"]) for v in read_csv(path, ("omega_star", "impulse"))]
-    if not impacts:
-        raise TableError(f"{path}: the table is empty")
-    return impacts
+    found = list(read_csv(path, ("omega_star", "impulse")))
+    if bool(found) != any(row.impacts > 0 for row in rows):
+        raise TableError(f"{path}: {'has impacts' if found else 'the table is empty'}, other than frf.csv beside it")
+    greatest = max(rows, key=lambda row: abs(row.impulse))
+    scale = greatest.impulse_star / greatest.impulse if greatest.impulse != 0.0 else 0.0
+    return [Impact(values["omega_star"], scale * values["impulse"]) for values in found]
 
 
 def read_frequency_ratio(folder):

@@ -2,6 +2,7 @@
 """plot_frf and landmarks, run as a user runs them on synthetic tables; what demo refuses before it does anything."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -94,9 +95,36 @@ class PlotTest(ScriptTest):
             self.edit(self.beams, name, lambda lines: lines[:1])
             self.assert_refused(self.run_script("plot_frf", self.beams, "--out", self.out), name, "empty")
 
-    def test_no_impact_anywhere(self):
+    def labels(self, *arguments):
+        """What stands in the picture of these tables, as the comments of the SVG file say."""
+        result = self.run_script("plot_frf", *arguments, "--out", self.out)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual(sorted(os.listdir(self.out)), ["frf.png", "frf.svg"])
+        with open(os.path.join(self.out, "frf.svg"), encoding="utf-8") as file:
+            return re.findall("<!-- (.*?) -->", file.read())
+
+    def test_no_impact_anywhere_is_drawn(self):
         write_tables(self.beams, [(1.0, 1, []), (2.0, 1, [])])
-        self.assert_refused(self.run_script("plot_frf", self.beams, "--out", self.out), "frf.csv", "no frequency has an impact")
+        labels = self.labels(self.beams)
+        self.assertIn("no impacts at 2 drive frequencies, base acceleration 10 m/s$^2$", labels)
+        self.assertEqual(labels.count("no impacts"), 2)  # in both panels
+        self.assertIn("two beams: no impacts", labels)
+
+    def test_compares_with_a_table_without_impacts(self):
+        write_tables(self.rigid, [(1.0, 1, []), (2.0, 1, [])])
+        labels = self.labels(self.beams, "--compare", self.rigid)
+        self.assertIn("two beams: every captured impact", labels)
+        self.assertIn("single beam on a rigid surface: no impacts", labels)
+        self.assertNotIn("two beams: no impacts", labels)
+
+    def test_no_positive_impulse_anywhere_is_drawn(self):
+        write_tables(self.beams, [(1.0, 1, [-0.1]), (2.0, 1, [-0.2])])
+        self.assertIn("no positive impulses", self.labels(self.beams))
+
+    def test_tables_that_do_not_belong_together(self):
+        write_tables(os.path.join(self.folder, "none"), [(1.0, 1, []), (2.0, 1, [])])
+        os.replace(os.path.join(self.folder, "none", "frf.csv"), os.path.join(self.beams, "frf.csv"))
+        self.assert_refused(self.run_script("plot_frf", self.beams, "--out", self.out), "impacts.csv: has impacts, other than frf.csv")
 
     def test_cell_that_is_no_number(self):
         for bad in ("wide", "nan", ""):
@@ -125,11 +153,10 @@ class PlotTest(ScriptTest):
         result = self.run_script("plot_frf", self.beams, "--out", self.out)
         self.assertEqual((result.returncode, result.stderr), (0, ""))
 
-    def test_rows_without_impacts_leave_room(self):
+    def test_rows_without_impacts_are_marked(self):
         response = [(w, p, impulses if w > 1.4 else []) for w, p, impulses in synthetic_response(step=0.05)]
         write_tables(self.beams, response)
-        result = self.run_script("plot_frf", self.beams, "--out", self.out)
-        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertIn("two beams: no impacts", self.labels(self.beams))
 
 
 class LandmarksTest(ScriptTest):
