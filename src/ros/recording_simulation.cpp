@@ -1,9 +1,13 @@
 #include "vibro_impact/ros/recording_simulation.h"
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "text.h"
 #include "vibro_impact/config/error.h"
+#include "vibro_impact/ros/contact_history.h"
 #include "vibro_impact/ros/conversions.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
@@ -71,51 +75,112 @@ void note(const Verdict& verdict, RecordingSimulation& result)
   }
 }
 
+// Tells a simulation of the changes of the contact as their samples come: a stream that begins anew may count the same
+// numbers again.
+class ContactChanger
+{
+public:
+  explicit ContactChanger(const RecordedModel& recorded) : recorded_(recorded)
+  {
+  }
+
+  void beforeBlock(const Samples& block, const StreamLimits& limits, StreamSimulation& simulation)
+  {
+    const std::uint64_t end = block.seq + block.values.size();
+    const double duration = static_cast<double>(block.values.size()) * block.sample_period + limits.max_stamp_jitter;
+    for (; next_ < recorded_.changes.size(); ++next_)
+    {
+      const RecordedChange& change = recorded_.changes[next_];
+      const double later = 1.0e-9 * static_cast<double>(change.stamp - block.stamp);
+      if (change.seq >= end || !(later < duration))
+      {
+        return;
+      }
+      core::SystemParameters changed = recorded_.parameters;
+      changed.contact = change.contact;
+      // The first sample of a stream that begins anew has no number for the simulation before it comes.
+      const bool anew = change.seq == block.seq && change.seq < end_;
+      simulation.setContact(std::make_shared<const core::SwitchedModel>(changed), anew ? 0 : change.seq);
+    }
+  }
+
+  void afterBlock(const Samples& block)
+  {
+    end_ = block.seq + block.values.size();
+  }
+
+private:
+  const RecordedModel& recorded_;
+  std::size_t next_ = 0;
+  std::uint64_t end_ = 0;  // of the block taken last
+};
+
 }  // namespace
 
-ContactHistory recordedContacts(const RecordedRun& recording)
+RecordedModel recordedModel(const RecordedRun& recording)
 {
-  ContactHistory history(recording.topics().model_info);
-  bool found = false;
+  const std::string& topic = recording.topics().model_info;
+  ContactHistory history(topic);
+  RecordedModel model;
+  std::optional<std::uint64_t> last;
   recording.readModelInfo(
       [&](const ModelInfo& info)
       {
         history.add(info);
-        found = true;
+        if (!last)
+        {
+          model.parameters = fromMessage(info);
+          model.known_from = {info.seq, fromTime(info.header.stamp), model.parameters.contact};
+        }
+        else if (info.number > *last + 1)
+        {
+          throw config::Error(text("topic ", topic, ": number ", *last + 1,
+                                   " is missing: the recording has lost a change of the contact"));
+        }
+        else if (info.number > *last)
+        {
+          model.changes.push_back({info.seq, fromTime(info.header.stamp), fromMessage(info).contact});
+        }
+        last = info.number;
       });
-  if (!found)
+  if (!last)
   {
     throw config::Error("the recording holds no model_info: give a configuration as CONFIG");
   }
-  return history;
+  return model;
 }
 
-RecordingSimulation simulateRecording(const RecordedRun& recording, const core::SystemParameters& parameters,
-                                      const std::vector<DatedContact>& changes, const StreamLimits& limits,
-                                      const config::HistorySelection& history, const config::RunProgress& progress)
+RecordingSimulation simulateRecording(const RecordedRun& recording, const RecordedModel& recorded,
+                                      const StreamLimits& limits, const config::HistorySelection& history,
+                                      const config::RunProgress& progress)
 {
   StreamRecorder recorder(history);
-  StreamSimulation simulation(std::make_shared<const core::SwitchedModel>(parameters), limits);
+  StreamSimulation simulation(std::make_shared<const core::SwitchedModel>(recorded.parameters), limits);
   simulation.observe(recorder);
-  for (const DatedContact& change : changes)
-  {
-    core::SystemParameters changed = parameters;
-    changed.contact = change.contact;
-    simulation.setContact(std::make_shared<const core::SwitchedModel>(changed), change.seq);
-  }
+  ContactChanger contact(recorded);
   RecordingSimulation result;
   Samples samples;
   recording.readExcitation(
       [&](const BaseExcitation& block)
       {
         fromMessage(block, samples);
+        contact.beforeBlock(samples, limits, simulation);
         const Verdict& verdict = simulation.advance(samples).verdict;
         note(verdict, result);
-        if (verdict.action != Verdict::Action::Refuse)
+        if (verdict.action == Verdict::Action::Refuse)
         {
-          result.samples += samples.values.size();
-          result.sample_period = samples.sample_period;
+          return;
         }
+        const RecordedChange& known = recorded.known_from;
+        if (result.samples == 0 && samples.seq < known.seq && samples.stamp < known.stamp)
+        {
+          throw config::Error(text("the recording begins with sample ", samples.seq,
+                                   ", and tells the contact only from sample ", known.seq,
+                                   " on: give a configuration as CONFIG"));
+        }
+        contact.afterBlock(samples);
+        result.samples += samples.values.size();
+        result.sample_period = samples.sample_period;
       },
       progress);
   if (result.samples == 0)

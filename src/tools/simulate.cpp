@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -218,21 +217,18 @@ void draw(const std::string& script, const std::string& folder)
 
 config::SimulatedRun simulateBag(const Arguments& arguments, const graph::RecordedRun& recording)
 {
-  core::SystemParameters parameters;
-  std::vector<graph::DatedContact> changes;
+  graph::RecordedModel model;
   if (arguments.configuration)
   {
-    parameters = config::loadFile(*arguments.configuration);
+    model.parameters = config::loadFile(*arguments.configuration);
   }
   else
   {
-    const graph::ContactHistory history = graph::recordedContacts(recording);
-    parameters = history.parameters();
-    changes.assign(std::next(history.contacts().begin()), history.contacts().end());
+    model = graph::recordedModel(recording);
   }
   tools::ProgressLine line;
   const graph::RecordingSimulation simulation =
-      graph::simulateRecording(recording, parameters, changes, graph::StreamLimits{}, arguments.history, telling(line));
+      graph::simulateRecording(recording, model, graph::StreamLimits{}, arguments.history, telling(line));
   std::cout << simulation.samples << " samples taken, " << simulation.bridged << " bridged, " << simulation.restarts
             << " restarts from rest, " << simulation.refused << " blocks refused\n";
   if (!simulation.first_irregularity.empty())

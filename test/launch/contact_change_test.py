@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The contact of a running simulator changes; what a bag holds of it gives the same impacts again in a new one."""
 
+import csv
 import math
 import os
 import subprocess
@@ -12,9 +13,10 @@ import rospy
 import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
+from roslib.packages import find_node
 
 from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
-from vibro_impact.msg import BaseExcitation, Gap, Impact, ModelInfo
+from vibro_impact.msg import BaseExcitation, ContactForce, Gap, Impact, ModelInfo
 from vibro_impact.srv import SetContact
 
 PACKAGE = rospkg.RosPack().get_path("vibro_impact")
@@ -28,9 +30,9 @@ def configuration():
         return dict(yaml.safe_load(stream), queue_size=0, diagnostic_period=0.1)
 
 
-def block(seq):
+def block(seq, start=1700000000):
     message = BaseExcitation(seq=seq, sample_period=PERIOD)
-    message.header.stamp = rospy.Time(1700000000) + rospy.Duration(nsecs=seq * 20000)
+    message.header.stamp = rospy.Time(start) + rospy.Duration(nsecs=seq * 20000)
     message.acceleration = [2.0 * math.sin(1.6 * 1705.6 * i * PERIOD) for i in range(seq, seq + BLOCK)]
     return message
 
@@ -45,6 +47,11 @@ def fields(message):
     return [str(message.header.stamp)] + [getattr(message, slot) for slot in message.__slots__ if slot != "header"]
 
 
+def table(path):
+    with open(path) as stream:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(stream)]
+
+
 class Rig:
     """A simulator of its own, and all that it publishes."""
 
@@ -55,7 +62,7 @@ class Rig:
         self.name = name_space + "/simulator"
         self.messages = {}
         self.topics = []
-        for topic, kind in [("gap", Gap), ("impact", Impact), ("model_info", ModelInfo)]:
+        for topic, kind in [("gap", Gap), ("contact_force", ContactForce), ("impact", Impact), ("model_info", ModelInfo)]:
             self.subscribe(name_space + "/" + topic, topic, kind)
         self.subscribe("/diagnostics", "diagnostics", DiagnosticArray)
         self.publisher = rospy.Publisher(name_space + "/base_excitation", BaseExcitation, queue_size=1000)
@@ -87,6 +94,7 @@ class Rig:
         """Waits for all answers to so many blocks."""
         self.test.assertTrue(wait_until(
             lambda: self.count("Blocks accepted") == blocks and len(self.messages["gap"]) == blocks
+            and len(self.messages["contact_force"]) == blocks
             and len(self.messages["impact"]) == self.count("Impacts")
             and len(self.messages["model_info"]) == 1 + self.count("Contact changes")), self.test.printed())
 
@@ -158,6 +166,57 @@ class ContactChangeTest(NodeProcessTest):
         self.assertEqual([(info.seq, info.number, info.configuration) for info in again.messages["model_info"]],
                          [(info.seq, info.number, info.configuration) for info in infos])
         self.assertEqual([gap.gap for gap in again.messages["gap"]], [gap.gap for gap in rig.messages["gap"]])
+
+    def test_simulate_gives_what_the_node_published(self):
+        rig = Rig(self, self.namespace)
+        rig.connect()
+        for seq, clearance in [(0, -9.0e-8), (3100, -6.0e-8), (3000, -7.0e-8), (15100, 2.0e-8)]:
+            answer = rig.set_contact(STIFFNESS, clearance, seq)
+            self.assertTrue(answer.success, answer.message)
+        first = [block(seq) for seq in range(0, 10000, BLOCK)]
+        # A shaker that begins anew counts the same samples again; 500 samples of it are lost, and bridged over.
+        second = [block(seq, 1700000100) for seq in range(0, 10000, BLOCK) if not 4000 <= seq < 4500]
+        last = [block(seq, 1700000200) for seq in range(12000, 20000, BLOCK)]
+        published = 0
+        for blocks, change in [(first, None), (second[:16], (0.7 * STIFFNESS, -2.0e-8, 0)),
+                               (second[16:], (0.8 * STIFFNESS, 0.0, 4200)), (last, None)]:
+            if change:
+                answer = rig.set_contact(*change)
+                self.assertTrue(answer.success, answer.message)
+            for message in blocks:
+                rig.publisher.publish(message)
+            published += len(blocks)
+            rig.answered(published)
+        infos = rig.messages["model_info"]
+        self.assertEqual([info.seq for info in infos], [0, 0, 3000, 3100, 0, 4200, 15100])
+
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        path = os.path.join(directory.name, "run.bag")
+        with rosbag.Bag(path, "w") as bag:
+            for message in first + second + last:
+                bag.write("base_excitation", message, message.header.stamp)
+            for info in infos:  # a recorder hears of a change when the block is answered in which it was made
+                stamp = info.header.stamp if info.number > 0 else first[0].header.stamp
+                bag.write("model_info", info, stamp + rospy.Duration(0.005))
+        out = os.path.join(directory.name, "out")
+        report = subprocess.check_output(
+            [find_node("vibro_impact", "simulate")[0], "--bag", path, "--out", out], universal_newlines=True)
+        self.assertIn("500 bridged, 2 restarts from rest, 0 blocks refused", report)
+
+        impacts = table(os.path.join(out, "impacts.csv"))
+        self.assertEqual(len(impacts), len(rig.messages["impact"]))  # the excitation ends while the beams are apart
+        self.assertGreater(len(impacts), 50)
+        for row, impact in zip(impacts, rig.messages["impact"]):
+            self.assertEqual(row["duration_s"], impact.duration)
+            for name in ("number", "impulse", "peak_force", "approach_speed", "separation_speed", "energy_lost", "cut_short"):
+                self.assertEqual(row[name], getattr(impact, name), name)
+        history = table(os.path.join(out, "history.csv"))
+        bridged = len(first) * BLOCK + 4000
+        del history[bridged:bridged + 500]
+        self.assertEqual([row["gap"] for row in history], [gap for message in rig.messages["gap"] for gap in message.gap])
+        self.assertEqual([row["force"] for row in history],
+                         [force for message in rig.messages["contact_force"] for force in message.force])
 
     def test_bad_values_change_nothing(self):
         rig = Rig(self, self.namespace)

@@ -14,6 +14,7 @@
 #include "synthetic_run.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/number.h"
+#include "vibro_impact/ros/stream_simulation.h"
 
 namespace vibro_impact::graph
 {
@@ -108,6 +109,38 @@ protected:
     return columns;
   }
 
+  /// What was written is what was recorded, bit for bit.
+  void expectAnswersOf(const SyntheticRun& recording) const
+  {
+    const auto impacts = table(results(), "impacts.csv");
+    ASSERT_EQ(impacts.at("number").size(), recording.impacts.size());
+    for (std::size_t i = 0; i < recording.impacts.size(); ++i)
+    {
+      const Impact& expected = recording.impacts[i];
+      EXPECT_EQ(impacts.at("number")[i], static_cast<double>(expected.number));
+      EXPECT_EQ(impacts.at("onset_s")[i], static_cast<double>(expected.seq) * sample_period + expected.offset);
+      EXPECT_EQ(impacts.at("duration_s")[i], expected.duration);
+      EXPECT_EQ(impacts.at("impulse")[i], expected.impulse);
+      EXPECT_EQ(impacts.at("peak_force")[i], expected.peak_force);
+      EXPECT_EQ(impacts.at("approach_speed")[i], expected.approach_speed);
+      EXPECT_EQ(impacts.at("separation_speed")[i], expected.separation_speed);
+      EXPECT_EQ(impacts.at("energy_lost")[i], expected.energy_lost);
+      EXPECT_EQ(impacts.at("cut_short")[i], expected.cut_short ? 1.0 : 0.0);
+    }
+    // And the answers to every sample.
+    const auto history = table(results(), "history.csv");
+    std::size_t row = 0;
+    for (std::size_t block = 0; block < recording.gaps.size(); ++block)
+    {
+      for (std::size_t i = 0; i < recording.gaps[block].gap.size(); ++i, ++row)
+      {
+        EXPECT_EQ(history.at("gap").at(row), recording.gaps[block].gap[i]);
+        EXPECT_EQ(history.at("force").at(row), recording.forces[block].force[i]);
+      }
+    }
+    EXPECT_EQ(row, history.at("gap").size());
+  }
+
   core::SystemParameters parameters_;
   std::string configuration_;
 };
@@ -144,34 +177,52 @@ TEST_F(Simulate, GivesTheImpactsOfTheBagBitForBit)
   const Outcome outcome = run("--bag " + path + " --out " + results());
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.out, HasSubstr("4000 samples taken, 0 bridged, 0 restarts from rest, 0 blocks refused\n"));
-  const auto impacts = table(results(), "impacts.csv");
-  ASSERT_EQ(impacts.at("number").size(), recording.impacts.size());
   ASSERT_GT(recording.impacts.size(), 20u);
-  for (std::size_t i = 0; i < recording.impacts.size(); ++i)
+  expectAnswersOf(recording);
+}
+
+TEST_F(Simulate, FollowsTheChangesOfTheContactInTheBag)
+{
+  const core::ContactParameters first = parameters_.contact;
+  const SyntheticRun recording(parameters_, excitation(), sample_period,
+                               {{1200, {0.8 * first.stiffness, 1.0e-7}},
+                                {1600, {0.8 * first.stiffness, -1.0e-7}},
+                                {2800, {1.5 * first.stiffness, 5.0e-8}}});
+  const SyntheticRun unchanged = recorded();
+  ASSERT_GT(recording.impacts.size(), 20u);
+  ASSERT_NE(recording.impacts.back().impulse, unchanged.impacts.back().impulse);
+  const Outcome outcome = run("--bag " + bag(recording) + " --out " + results());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("4000 samples taken, 0 bridged, 0 restarts from rest, 0 blocks refused\n"));
+  expectAnswersOf(recording);
+}
+
+TEST_F(Simulate, FollowsAnyNumberOfChanges)
+{
+  std::map<std::uint64_t, core::ContactParameters> changes;
+  for (std::uint64_t i = 1; i <= StreamSimulation::max_waiting_changes + 10; ++i)
   {
-    const Impact& expected = recording.impacts[i];
-    EXPECT_EQ(impacts.at("number")[i], static_cast<double>(expected.number));
-    EXPECT_EQ(impacts.at("onset_s")[i], static_cast<double>(expected.seq) * sample_period + expected.offset);
-    EXPECT_EQ(impacts.at("duration_s")[i], expected.duration);
-    EXPECT_EQ(impacts.at("impulse")[i], expected.impulse);
-    EXPECT_EQ(impacts.at("peak_force")[i], expected.peak_force);
-    EXPECT_EQ(impacts.at("approach_speed")[i], expected.approach_speed);
-    EXPECT_EQ(impacts.at("separation_speed")[i], expected.separation_speed);
-    EXPECT_EQ(impacts.at("energy_lost")[i], expected.energy_lost);
-    EXPECT_EQ(impacts.at("cut_short")[i], expected.cut_short ? 1.0 : 0.0);
+    changes[2 * i] = {parameters_.contact.stiffness, 1.0e-10 * static_cast<double>(i)};
   }
-  // And the answers to every sample.
-  const auto history = table(results(), "history.csv");
-  std::size_t row = 0;
-  for (std::size_t block = 0; block < recording.gaps.size(); ++block)
-  {
-    for (std::size_t i = 0; i < recording.gaps[block].gap.size(); ++i, ++row)
-    {
-      EXPECT_EQ(history.at("gap").at(row), recording.gaps[block].gap[i]);
-      EXPECT_EQ(history.at("force").at(row), recording.forces[block].force[i]);
-    }
-  }
-  EXPECT_EQ(row, history.at("gap").size());
+  parameters_.basis = core::AttachmentBasis{1};
+  const SyntheticRun recording(parameters_, excitation(), sample_period, changes, 2);
+  const Outcome outcome = run("--bag " + bag(recording) + " --out " + results());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  expectAnswersOf(recording);
+}
+
+TEST_F(Simulate, RefusesABagThatHasLostAChangeOfTheContact)
+{
+  const core::ContactParameters first = parameters_.contact;
+  SyntheticRun recording(parameters_, excitation(), sample_period,
+                         {{1200, {first.stiffness, 1.0e-7}}, {1600, {first.stiffness, 2.0e-7}}});
+  const std::vector<ModelInfo> infos = recording.infos;
+  recording.infos.erase(recording.infos.begin() + 1);
+  expectRefusal("--bag " + bag(recording) + " --out " + results(), 1,
+                "topic /model_info: number 1 is missing: the recording has lost a change of the contact");
+  recording.infos = {infos[1], infos[2]};
+  expectRefusal("--bag " + bag(recording) + " --out " + results(), 1,
+                "the recording begins with sample 0, and tells the contact only from sample 1200 on");
 }
 
 TEST_F(Simulate, GivesTheSameFromATableABagAndABareExcitation)

@@ -7,8 +7,8 @@
 
 #include "vibro_impact/config/simulated_run.h"
 #include "vibro_impact/core/parameters.h"
-#include "vibro_impact/ros/contact_history.h"
 #include "vibro_impact/ros/recorded_run.h"
+#include "vibro_impact/ros/samples.h"
 #include "vibro_impact/ros/stream_rules.h"
 
 namespace vibro_impact::graph
@@ -25,15 +25,31 @@ struct RecordingSimulation
   std::string first_irregularity;  ///< why the first block was refused, bridged to or restarted at; empty: none was
 };
 
-/// The model of a recording and the changes of its contact. Throws config::Error if the recording holds no
-/// configuration, or several that differ in more than the contact.
-ContactHistory recordedContacts(const RecordedRun& recording);
+/// A change of the contact, as its model_info dates it.
+struct RecordedChange
+{
+  std::uint64_t seq = 0;  ///< number of the first sample that it holds for
+  Stamp stamp = 0;        ///< of that sample, which tells one stream from the next
+  core::ContactParameters contact;
+};
 
-/// Plays the excitation of a recording to a model as the simulator takes it, by the rules of StreamRules: the same
-/// impacts as those of a node, bit for bit. `changes`: of the contact, in the course of the recording. At a restart the
-/// energy account begins anew. Throws config::Error if the recording is damaged or no block of it is fit to be taken.
-RecordingSimulation simulateRecording(const RecordedRun& recording, const core::SystemParameters& parameters,
-                                      const std::vector<DatedContact>& changes, const StreamLimits& limits,
-                                      const config::HistorySelection& history, const config::RunProgress& progress);
+/// What was simulated with in the course of a recording.
+struct RecordedModel
+{
+  core::SystemParameters parameters;    ///< at the beginning
+  std::vector<RecordedChange> changes;  ///< in the order in which they were made
+  RecordedChange known_from;            ///< what the recording tells first: the contact before it is not known
+};
+
+/// Throws config::Error if the recording holds no configuration, several that differ in more than the contact, or not
+/// all changes of the contact.
+RecordedModel recordedModel(const RecordedRun& recording);
+
+/// Plays the excitation of a recording to a model as the simulator takes it, by the rules of StreamRules: gap, force
+/// and impacts are those of a node, bit for bit. At a restart the energy account begins anew. Throws config::Error if
+/// the recording is damaged, no block of it is fit to be taken, or it begins before the contact is known.
+RecordingSimulation simulateRecording(const RecordedRun& recording, const RecordedModel& recorded,
+                                      const StreamLimits& limits, const config::HistorySelection& history,
+                                      const config::RunProgress& progress);
 
 }  // namespace vibro_impact::graph
