@@ -43,7 +43,6 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   wrench_publisher_ = node.advertise<geometry_msgs::WrenchStamped>("contact_wrench", mirror_queue);
   gap_now_publisher_ = node.advertise<std_msgs::Float64>("gap_now", mirror_queue);
   model_info_publisher_ = node.advertise<ModelInfo>("model_info", StreamSimulation::max_waiting_changes, true);
-  publishModelInfo(simulation_.model(), 0, ros::Time());
 
   // The updater's own timing follows ros::Time, which stands still while a bag that gives the time is paused.
   diagnostics_.setHardwareID("none");
@@ -64,6 +63,8 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   set_contact_server_ = private_node.advertiseService("set_contact", &Simulator::onSetContact, this);
   excitation_subscriber_ =
       node.subscribe("base_excitation", queue_size, &Simulator::onExcitation, this, ros::TransportHints().tcpNoDelay());
+  // The last of all: who has heard it finds the services and is heard.
+  publishModelInfo(simulation_.model(), 0, ros::Time());
   // Also because roscpp's first line of the log registers the node anew: were it the last one, said to a newer node of
   // the same name that takes over, the master would have that one end as well.
   ROS_INFO("simulating what comes on topic %s", excitation_subscriber_.getTopic().c_str());

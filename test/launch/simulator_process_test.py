@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 
 import rosbag
+import rosgraph
 import rospkg
 import rospy
 import rostest
@@ -16,7 +17,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph_msgs.msg import Log
 
 from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
-from vibro_impact.msg import BaseExcitation, Gap, Impact
+from vibro_impact.msg import BaseExcitation, Gap, Impact, ModelInfo
 
 PERIOD = 2.0e-5
 
@@ -80,6 +81,21 @@ class SimulatorProcessTest(NodeProcessTest):
 
     def test_missing_configuration_ends_it(self):
         self.expect_failure({}, ["beam1 is missing", "beam2 is missing", "contact is missing", "damping is missing"])
+
+    def test_model_info_says_that_everything_is_there(self):
+        found = []
+
+        def look_up(_):
+            master = rosgraph.Master(rospy.get_name())
+            services = dict(master.getSystemState()[2])
+            subscribers = dict(master.getSystemState()[1])
+            found.append([name for name in ("reset", "set_contact") if self.namespace + "/simulator/" + name in services]
+                         + subscribers.get(self.namespace + "/base_excitation", []))
+
+        self.interfaces.append(rospy.Subscriber(self.namespace + "/model_info", ModelInfo, look_up))
+        self.start(configuration())
+        self.assertTrue(wait_until(lambda: found), self.printed())
+        self.assertEqual(found[0], ["reset", "set_contact", self.namespace + "/simulator"])
 
     def test_says_what_it_waits_for(self):
         log = self.subscribe("/rosout", Log)
