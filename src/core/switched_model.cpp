@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include <Eigen/QR>
+#include <Eigen/Householder>
 
 #include "vibro_impact/core/characteristic_equation.h"
 
@@ -102,7 +102,21 @@ Eigen::MatrixXd commonDirections(const Eigen::VectorXd& deflections, const Eigen
   Eigen::MatrixXd wanted(size, 2);
   wanted.col(0) = deflections.squaredNorm() > 0.0 ? deflections : participations;
   wanted.col(1) = deflections.squaredNorm() > 0.0 ? participations : deflections;
-  Eigen::MatrixXd directions = Eigen::HouseholderQR<Eigen::MatrixXd>(wanted).householderQ();
+  // The QR decomposition of two columns. HouseholderQR is made for blocks of any size: a third of the time that it
+  // takes to compile this file.
+  Eigen::MatrixXd reflections = wanted;
+  const auto below = [size, &reflections](Eigen::Index n) { return reflections.col(n).tail(size - n - 1); };
+  Eigen::VectorXd workspace(size);
+  Eigen::Vector2d scale;
+  double length = 0.0;
+  reflections.col(0).makeHouseholderInPlace(scale(0), length);
+  reflections.rightCols(1).applyHouseholderOnTheLeft(below(0), scale(0), workspace.data());
+  reflections.col(1).tail(size - 1).makeHouseholderInPlace(scale(1), length);
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(size, size);
+  for (const Eigen::Index n : {Eigen::Index{1}, Eigen::Index{0}})
+  {
+    directions.bottomRightCorner(size - n, size - n).applyHouseholderOnTheLeft(below(n), scale(n), workspace.data());
+  }
   for (Eigen::Index n = 0; n < 2; ++n)
   {
     if (directions.col(n).dot(wanted.col(n)) < 0.0)
