@@ -2,8 +2,9 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "eigenmodes.h"
 #include "vibro_impact/core/parameters.h"
 
 namespace vibro_impact::core
@@ -66,22 +67,22 @@ public:
       }
     }
     follow.conservativeResize(size, count);
-    stiffness_ = follow.transpose() * K * follow;
-    mass_ = follow.transpose() * M * follow;
-    base_ = follow.transpose() * M * translation;
-    contact_ = Eigen::VectorXd::Zero(count);
-    contact_(0) = 1.0;
-    contact_(1) = beam.contact_location - middle;
+    const Eigen::MatrixXd stiffness = follow.transpose() * K * follow;
+    Eigen::MatrixXd inertia = follow.transpose() * M * follow;
+    Eigen::VectorXd base = follow.transpose() * M * translation;
+    Eigen::VectorXd contact = Eigen::VectorXd::Zero(count);
+    contact(0) = 1.0;
+    contact(1) = beam.contact_location - middle;
     if (beam.rigid_body)
     {
-      mass_(0, 0) += beam.rigid_body->mass;
-      mass_(1, 1) += beam.rigid_body->rotary_inertia;
-      base_(0) += beam.rigid_body->mass;
+      inertia(0, 0) += beam.rigid_body->mass;
+      inertia(1, 1) += beam.rigid_body->rotary_inertia;
+      base(0) += beam.rigid_body->mass;
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness_, mass_);
-    frequencies = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-    deflections = solver.eigenvectors().transpose() * contact_;
-    participations = solver.eigenvectors().transpose() * base_;
+    const Eigenmodes modes = eigenmodes(stiffness, inertia);
+    frequencies = modes.values.cwiseMax(0.0).cwiseSqrt();
+    deflections = modes.vectors.transpose() * contact;
+    participations = modes.vectors.transpose() * base;
   }
 
   // Mass-normalised modes, by ascending frequency.
@@ -91,7 +92,7 @@ public:
 
   double receptance(double omega) const
   {
-    return contact_.dot((stiffness_ - omega * omega * mass_).fullPivLu().solve(contact_));
+    return (deflections.array().square() / (frequencies.array().square() - omega * omega)).sum();
   }
 
 private:
@@ -107,11 +108,6 @@ private:
     K += bending / (h * h * h) * k;
     M += mass_per_length * h / 420.0 * m;
   }
-
-  Eigen::MatrixXd stiffness_;
-  Eigen::MatrixXd mass_;
-  Eigen::VectorXd base_;
-  Eigen::VectorXd contact_;
 };
 
 }  // namespace vibro_impact::core

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <Eigen/Eigenvalues>
 
 #include "common.h"
 #include "direct_integrator.h"
+#include "eigenmodes.h"
 #include "reference_system.h"
 #include "switched_motion.h"
 #include "vibro_impact/core/beam.h"
@@ -78,12 +78,12 @@ std::complex<double> gapResponse(const SwitchedModel& model, double damping, dou
   const Eigen::VectorXd b = model.free().contact_deflection.matrix();
   const Eigen::MatrixXd stiffness =
       Eigen::MatrixXd(model.free().frequency.square().matrix().asDiagonal()) + model.stiffness() * b * b.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness);
+  const Eigenmodes modes = eigenmodes(stiffness);
   std::complex<double> sum = 0.0;
   for (Eigen::Index n = 0; n < b.size(); ++n)
   {
-    const Eigen::VectorXd shape = modes.eigenvectors().col(n);
-    const double squared = modes.eigenvalues()(n);
+    const Eigen::VectorXd shape = modes.vectors.col(n);
+    const double squared = modes.values(n);
     sum -= shape.dot(b) * shape.dot(model.free().participation.matrix()) /
            std::complex<double>(squared - omega * omega, 2.0 * damping * std::sqrt(squared) * omega);
   }
