@@ -77,10 +77,15 @@ free_port()
   /usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
 }
 
-# configure_and_build TARGET...: configures build/ with Ninja, builds these targets and installs to build/install.
+# configure_and_build [-DOPTION...] TARGET...: configures build/ with Ninja, builds these targets and installs to build/install.
 configure_and_build()
 {
-  cmake -S "${root}" -B "${build_dir}" -G Ninja -DCMAKE_INSTALL_PREFIX="${build_dir}/install" &&
+  local options=()
+  while [[ "${1:-}" == -D* ]]; do
+    options+=("$1")
+    shift
+  done
+  cmake -S "${root}" -B "${build_dir}" -G Ninja -DCMAKE_INSTALL_PREFIX="${build_dir}/install" "${options[@]}" &&
     cmake --build "${build_dir}" --target "$@" &&
     cmake --install "${build_dir}" >"${build_dir}/install.log"
 }
