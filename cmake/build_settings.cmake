@@ -12,6 +12,7 @@ add_compile_options(-ffp-contract=off)
 if(VIBRO_IMPACT_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+  add_compile_definitions(VIBRO_IMPACT_SANITIZE)
 endif()
 
 # Our own code only: vibro_impact_target_settings(TARGET).
