@@ -84,8 +84,18 @@ void SampledSimulation::advance(const double* acceleration, std::size_t count, d
                                 ImpactSink& sink)
 {
   Implementation& self = *implementation_;
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < count;)
   {
+    const std::size_t steady = self.samples > 0 ? self.motion.advanceSteadily(self.last_acceleration, acceleration + i,
+                                                                              count - i, gap + i, force + i)
+                                                : 0;
+    if (steady > 0)
+    {
+      self.samples += steady;
+      i += steady;
+      self.last_acceleration = acceleration[i - 1];
+      continue;
+    }
     if (self.samples++ > 0)
     {
       self.motion.advanceLinear(self.last_acceleration, acceleration[i], sink);
@@ -93,6 +103,7 @@ void SampledSimulation::advance(const double* acceleration, std::size_t count, d
     self.last_acceleration = acceleration[i];
     gap[i] = self.motion.gap();
     force[i] = self.motion.force();
+    ++i;
   }
 }
 

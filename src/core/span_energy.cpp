@@ -19,8 +19,8 @@ void SpanEnergy::tabulate(const LinearState& linear, const Eigen::VectorXd& kick
 {
   const Eigen::Index size = kick.size();
   const Eigen::Index half = size / 2;
-  for (Eigen::VectorXd* table : {&squares_, &participation_, &integral_, &damping_, &kicked_, &work_re_, &work_im_,
-                                 &dissipation_re_, &dissipation_im_, &kicks_})
+  drive_forms_ = Eigen::MatrixXd::Zero(size, 4);
+  for (Eigen::VectorXd* table : {&squares_, &participation_, &integral_, &damping_, &kicked_, &kicks_})
   {
     *table = Eigen::VectorXd::Zero(size);
   }
@@ -71,15 +71,15 @@ void SpanEnergy::tabulateHarmonic(const LinearState& linear, double frequency, d
   harmonic_ = true;
   const std::complex<double> i_omega(0.0, frequency);
   const Eigen::Index half = squares_.size() / 2;
-  const auto set = [half](Eigen::VectorXd& of_re, Eigen::VectorXd& of_im, Eigen::Index n, std::complex<double> with,
-                          std::complex<double> against)
+  const auto set =
+      [half, this](Eigen::Index column, Eigen::Index n, std::complex<double> with, std::complex<double> against)
   {
     const std::complex<double> sum = with + against;
     const std::complex<double> difference = with - against;
-    of_re(n) = sum.real();
-    of_re(half + n) = -sum.imag();
-    of_im(n) = -difference.imag();
-    of_im(half + n) = -difference.real();
+    drive_forms_(n, column) = sum.real();
+    drive_forms_(half + n, column) = -sum.imag();
+    drive_forms_(n, column + 1) = -difference.imag();
+    drive_forms_(half + n, column + 1) = -difference.real();
   };
   std::complex<double> admittance = 0.0;
   std::complex<double> dissipation = 0.0;
@@ -96,9 +96,8 @@ void SpanEnergy::tabulateHarmonic(const LinearState& linear, double frequency, d
                                       linear.frequency(n) * std::sqrt(1.0 - std::pow(linear.damping_ratio(n), 2)));
     const std::complex<double> transfer(transfer_re(n), transfer_im(n));
     const std::complex<double> velocity = i_omega * transfer;
-    set(work_re_, work_im_, n, -0.5 * participation * lambda / (lambda + i_omega),
-        -0.5 * participation * lambda / (lambda - i_omega));
-    set(dissipation_re_, dissipation_im_, n, 2.0 * decay * lambda * velocity / (lambda + i_omega),
+    set(0, n, -0.5 * participation * lambda / (lambda + i_omega), -0.5 * participation * lambda / (lambda - i_omega));
+    set(2, n, 2.0 * decay * lambda * velocity / (lambda + i_omega),
         2.0 * decay * lambda * std::conj(velocity) / (lambda - i_omega));
     admittance += participation * transfer;
     dissipation += 0.5 * decay * velocity * velocity / i_omega;
@@ -116,7 +115,7 @@ void SpanEnergy::open(const Eigen::VectorXd& z, const Moment& now)
 {
   start_ = antiderivatives(z, now);
   kicks_.setZero();
-  squared_changes_ = squared_slope_ = 0.0;
+  passed_ = Passed();
 }
 
 SpanEnergy::Amounts SpanEnergy::upTo(const Eigen::VectorXd& z, const Moment& now) const
@@ -126,9 +125,10 @@ SpanEnergy::Amounts SpanEnergy::upTo(const Eigen::VectorXd& z, const Moment& now
   amounts.dissipated -= start_.dissipated;
   if (!harmonic_)
   {
-    amounts.work += lag_ * squared_slope_ - form(integral_, kicks_) - 0.5 * integral_of_kick_ * squared_changes_;
-    amounts.dissipated +=
-        drag_ * squared_slope_ + form(kicked_, kicks_) + (0.5 * damping_of_kick_ - squares_of_kick_) * squared_changes_;
+    amounts.work +=
+        lag_ * passed_.squared_slope - form(integral_, kicks_) - 0.5 * integral_of_kick_ * passed_.squared_changes;
+    amounts.dissipated += drag_ * passed_.squared_slope + form(kicked_, kicks_) +
+                          (0.5 * damping_of_kick_ - squares_of_kick_) * passed_.squared_changes;
   }
   return amounts;
 }
@@ -139,9 +139,11 @@ SpanEnergy::Amounts SpanEnergy::antiderivatives(const Eigen::VectorXd& z, const 
   {
     const double square_re = now.drive_re * now.drive_re - now.drive_im * now.drive_im;
     const double square_im = 2.0 * now.drive_re * now.drive_im;
-    return {now.drive_re * form(work_re_, z) + now.drive_im * form(work_im_, z) + work_drive_re_ * square_re +
-                work_drive_im_ * square_im + work_rate_ * now.time + now.body_energy,
-            quadratic(z) + now.drive_re * form(dissipation_re_, z) + now.drive_im * form(dissipation_im_, z) +
+    const auto [work_re, work_im, dissipation_re, dissipation_im] =
+        evaluateFourForms(drive_forms_.data(), z.data(), z.size());
+    return {now.drive_re * work_re + now.drive_im * work_im + work_drive_re_ * square_re + work_drive_im_ * square_im +
+                work_rate_ * now.time + now.body_energy,
+            quadratic(z) + now.drive_re * dissipation_re + now.drive_im * dissipation_im +
                 dissipation_drive_re_ * square_re + dissipation_drive_im_ * square_im + dissipation_rate_ * now.time};
   }
   const double a = now.acceleration;

@@ -57,8 +57,18 @@ public:
   /// is before to kicks().
   void pass(double change, double slope, double length)
   {
-    squared_changes_ += change * change;
-    squared_slope_ += slope * slope * length;
+    passed_.squared_changes += change * change;
+    passed_.squared_slope += slope * slope * length;
+  }
+  struct Passed
+  {
+    double squared_changes = 0.0;  // of the slope
+    double squared_slope = 0.0;    // integral over the intervals that have ended
+  };
+  /// The same for whoever passes many samples at once.
+  Passed& passed()
+  {
+    return passed_;
   }
   double* kicks()
   {
@@ -85,14 +95,13 @@ private:
   double drag_ = 0.0;              // sum 2 delta c^2
   double integral_of_kick_ = 0.0, damping_of_kick_ = 0.0, squares_of_kick_ = 0.0;
   // Forms that multiply the two parts of d, and the terms without z.
-  Eigen::VectorXd work_re_, work_im_, dissipation_re_, dissipation_im_;
+  Eigen::MatrixXd drive_forms_;  // columns: work with Re d and with Im d, dissipation with Re d and with Im d
   double work_drive_re_ = 0.0, work_drive_im_ = 0.0, work_rate_ = 0.0;  // coefficients of Re d^2, Im d^2, time
   double dissipation_drive_re_ = 0.0, dissipation_drive_im_ = 0.0, dissipation_rate_ = 0.0;
 
   Amounts start_;
-  Eigen::VectorXd kicks_;         // sum of slope changes times z
-  double squared_changes_ = 0.0;  // of the slope
-  double squared_slope_ = 0.0;    // integral over the intervals that have ended
+  Eigen::VectorXd kicks_;  // sum of slope changes times z
+  Passed passed_;
 };
 
 }  // namespace vibro_impact::core

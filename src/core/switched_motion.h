@@ -4,11 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include <Eigen/Core>
 
+#include "gap_stretch.h"
+#include "lanes.h"
 #include "span_energy.h"
+#include "state_tables.h"
 #include "vibro_impact/core/energy_account.h"
 #include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
@@ -35,16 +39,23 @@ namespace vibro_impact::core
 /// advanced by factors exp(lambda tick 2^k) tabulated once: no transcendental function is evaluated between the
 /// switches, nor at them.
 ///
-/// A switch is found by steps that cannot skip one. If B bounds |g''|, a gap g > 0 with the rate g' cannot reach zero
-/// before
+/// A switch is found by steps that cannot skip one. A step is 2^k ticks, one product for each exponential, and is
+/// judged by gap, rate and acceleration at its two ends: between them the gap is a polynomial of fifth degree
+/// (GapStretch) but for the spread of the exponentials about theirs, which is bounded by amplitudes, as these only
+/// decay. Modes too fast for such a step are left out of the polynomial and have their amplitude for a spread. Where
+/// the gap cannot be shown to keep its sign, the step ends before the polynomial's first root, or is tried again
+/// shorter. Where a bound B_3 of the third derivative shows that the parabola of a moment tells of a root, and of no
+/// earlier one, Newton's method leads from there to a tick just past it, as soon as the gap can be told from zero
+/// (resolution_, its rounding error); the reported time and speed are those of the root. Where none of this shows
+/// anything, a gap g > 0 with the rate g' cannot reach zero before
 ///
-///   s = (g' + sqrt(g'^2 + 2 g B))/B,        B = sum_n |w_n| |lambda_n|^2 |z_n|  (amplitudes only decay)
+///   s = (g' + sqrt(g'^2 + 2 g B))/B,        B = sum_n |w_n| |lambda_n|^2 |z_n|
 ///
-/// and near a root s converges on it as Newton's method does, from this side. The motion lands on a tick
-/// just past the root, as soon as the gap can be told from zero (resolution_, its rounding error); the reported time
-/// and speed are those of the root. Exactly zero gap with zero velocity is no switch: there the first derivative that
-/// is not zero decides, and the motion is taken as far from the root as that derivative and a bound of the next one
-/// allow.
+/// Exactly zero gap with zero velocity is no switch: there the first derivative that is not zero decides, and the
+/// motion is taken as far from the root as the Taylor series and a bound of its remainder allow.
+///
+/// Under a linear drive the chord of the gap over an interval and a bound of the distance from it come first: most
+/// intervals have a gap much larger than that, and need no more.
 class SwitchedMotion
 {
 public:
@@ -53,15 +64,15 @@ public:
   /// and the interval is counted.
   static constexpr int switch_allowance = 256;
 
-  /// Steps in one interval without a switch after which the smallest step, one tick, is doubled (and again after as
-  /// many). A crossing that such a step overruns is still found by halving it; only a pair of crossings closer than the
-  /// step is not.
+  /// Steps in one interval, other than long ones, without a switch after which the smallest step becomes twice the
+  /// shortest of them (and again after as many). A crossing that such a step overruns is still found by halving it;
+  /// only a pair of crossings closer than the step is not.
   static constexpr int steps_before_coarser = 256;
 
   /// `phasor`: whether there is a harmonic drive D besides the linear one.
   SwitchedMotion(std::shared_ptr<const SwitchedModel> model, bool phasor);
 
-  /// Sets the length of the intervals (s, > 0) and tabulates the factors. Allocates at the first call only.
+  /// Sets the length of the intervals (s, > 0) and tabulates the factors. May allocate.
   void setInterval(double length);
 
   /// Sets the harmonic drive, Re D = -amplitude cos(Omega t), t = 0 at the start of an interval, an interval being one
@@ -85,6 +96,11 @@ public:
 
   /// Advances over one interval in which the base acceleration goes from `from` to `to` in a straight line.
   void advanceLinear(double from, double to, ImpactSink& sink);
+
+  /// Advances over as many of the next `count` intervals, at the ends of which the base acceleration is given, as are
+  /// easily seen to be without a switch. Writes gap and force at the end of each and returns their number;
+  /// advanceLinear() goes on from there. One call or many make no difference.
+  std::size_t advanceSteadily(double from, const double* accelerations, std::size_t count, double* gap, double* force);
 
   /// Advances over one cycle of the harmonic drive.
   void advanceHarmonic(ImpactSink& sink);
@@ -114,7 +130,7 @@ public:
   }
   double gapRate() const
   {
-    return rate_;
+    return moment_known_ ? rate_ : moment().rate;
   }
   /// Displacement and velocity in the coordinates of the present state, at the start of the next interval.
   void coordinates(Eigen::VectorXd& displacement, Eigen::VectorXd& velocity) const;
@@ -154,7 +170,7 @@ public:
   }
   double tick() const
   {
-    return tick_;
+    return grid_.tick;
   }
   const SwitchedModel& model() const
   {
@@ -162,49 +178,48 @@ public:
   }
 
 private:
-  static constexpr int highest_derivative = 8;
+  /// Rounding error of the gap, as a share of the terms it is summed from: an allowance for what adds up in 1e5
+  /// intervals.
+  static constexpr double gap_rounding = 128.0 * std::numeric_limits<double>::epsilon();
 
-  /// Everything about one state that the drive's form and the interval fix beforehand.
-  struct Tables
-  {
-    Eigen::Index bodies = 0;                  // coordinates without stiffness, which come first
-    Eigen::Index gap_body = -1;               // the one of them that moves the gap, or none
-    double body_deflection = 0.0;             // its w
-    double body_pull = 0.0;                   // w Gamma of that one
-    Eigen::ArrayXd decay, damped;             // -Re lambda, Im lambda, per mode
-    Eigen::ArrayXd compliance;                // Gamma/omega^2: quasi-static response to -a
-    Eigen::ArrayXd lag;                       // 2 zeta Gamma/omega^3: response to the slope s
-    Eigen::ArrayXd standing;                  // f/omega^2: response to the preload
-    Eigen::ArrayXd transfer_re, transfer_im;  // H_n
-    Eigen::VectorXd kick;                     // change of z per change of the slope s, [re; im]
-    double kick_bound = 0.0;                  // what it adds to B
-    double kick_gap_integral = 0.0;           // its integral form
-    // The line p(t) = line_constant - line_compliance a + line_lag s of the gap.
-    double line_constant = 0.0, line_compliance = 0.0, line_lag = 0.0;
-    // Column j + 1: the linear form [re; im] that gives the j-th derivative of Re sum w z; column 0 its integral.
-    Eigen::MatrixXd derivative;
-    Eigen::MatrixXd magnitude;  // column j: |w| |lambda|^j
-    SpanEnergy energy;
-    Eigen::ArrayXXd factor_re, factor_im;  // column k: exp(lambda tick 2^k) - 1
-  };
+  /// The most ticks that are made at a root to get past the gap's rounding error: 1e-9 of the shortest period.
+  static constexpr double most_ticks_through = 1024.0;
+
+  /// What exceeds the greatest compression so far by no more than this is no peak.
+  static constexpr double peak_share = 1.0 + 1.0e-10;
 
   /// What moves, in the sizes of one state.
   struct Vectors
   {
-    Eigen::VectorXd exponentials;   // [Re z; Im z], each half the modes, the drive's phasor, and padding; of bodies
-                                    // displacement and velocity of the polynomial part at body_time_
-    Eigen::VectorXd before, trial;  // exponentials at other times: before a step, on trial
-    Eigen::VectorXd history;        // exponentials at history_start_
-    Eigen::VectorXd displacement, velocity;  // eta and eta'
+    Eigen::VectorXd exponentials;  // [Re z; Im z], each half the modes, the drive's phasor, and padding; of bodies
+                                   // displacement and velocity of the polynomial part at body_time_
+    Eigen::VectorXd there, probe;  // exponentials at other times: at the end of a step, inside it
+    Eigen::VectorXd history;       // exponentials at history_start_
+    Eigen::VectorXd displacement, velocity;  // eta and eta', padded
+    int stride = 0;                          // long steps are of 2^stride ticks
+    // Over 2^k ticks, of those k whose bit is set.
+    std::array<Spread, 64> spreads, slow_spreads;
+    std::uint64_t known_spreads = 0, known_slow_spreads = 0;
+    Moment slow;  // of the exponentials as they are, without the modes that are too fast for 2^slow_stride ticks
+    int slow_stride = -1;       // -1: unknown
+    double third_bound = -1.0;  // of the third derivative; unknown where < 0
+
+    /// The exponentials have changed other than by time, which only makes them smaller.
+    void forgetBounds()
+    {
+      known_spreads = known_slow_spreads = 0;
+      slow_stride = -1;
+      third_bound = -1.0;
+    }
   };
 
   /// The contact episode under way.
   struct Episode
   {
     Impact impact;
-    double smallest_gap = 0.0;
-    double smallest_gap_time = 0.0;  // since onset
-    double elapsed = 0.0;            // up to the start of the piece
+    double compression = 0.0;       // greatest so far
+    double compression_time = 0.0;  // since onset
+    double elapsed = 0.0;           // up to the start of the piece
     double gap_integral = 0.0;
     double impulse = 0.0;  // up to the last change of the contact
     std::uint64_t first_step = 0;
@@ -212,13 +227,11 @@ private:
     double piece_start = 0.0;  // time in the interval
   };
 
-  void tabulate(int state);
-  void tabulatePhasor(int state);
-  Tables& now()
+  StateTables& now()
   {
     return tables_[static_cast<std::size_t>(state_)];
   }
-  const Tables& now() const
+  const StateTables& now() const
   {
     return tables_[static_cast<std::size_t>(state_)];
   }
@@ -236,8 +249,11 @@ private:
   void startFromCoordinates();
   void advanceInterval(double slope_change, ImpactSink& sink);
   void locateSwitches(ImpactSink& sink);
+  std::int64_t stride(std::int64_t left, double time);
+  std::int64_t land(std::int64_t left, double time);
   void step(std::int64_t ticks, double time);
   std::int64_t safeTicks(std::int64_t left);
+  bool approaches();
   bool hasNoRate() const;
   std::int64_t departureTicks(std::int64_t left);
   bool onWrongSide() const;
@@ -252,22 +268,55 @@ private:
   {
     return vectors_[static_cast<std::size_t>(state_)];
   }
-  void rotate(Eigen::VectorXd& exponentials, int k) const;
-  void rotateTicks(Eigen::VectorXd& exponentials, std::int64_t ticks) const;
+  struct Ticks
+  {
+    std::uint64_t tabulated;
+    double series;
+  };
+  /// Tabulated factors for long times, the series for what is short, forwards or back.
+  Ticks split(std::int64_t ticks) const
+  {
+    if (ticks < 0)
+    {
+      return {0, static_cast<double>(ticks)};
+    }
+    const std::int64_t strides = ticks >> grid_.shortest_stride;
+    const std::int64_t low = ticks - (strides << grid_.shortest_stride);
+    return {static_cast<std::uint64_t>(strides), static_cast<double>(low)};
+  }
+  /// to = from, `ticks` later; the gap's distance from zero there, and its derivatives.
+  Moment move(const Eigen::VectorXd& from, std::int64_t ticks, double time, Eigen::VectorXd& to) const;
+  void move(const Eigen::VectorXd& from, std::int64_t ticks, Eigen::VectorXd& to) const;
   void evaluate();
-  void evaluate(const Eigen::VectorXd& exponentials, double time, double& gap, double& rate) const;
-  double lineGap(double time) const
+  /// The gap's distance from zero, positive inside the present state, with its derivatives.
+  Moment distance(const Eigen::VectorXd& exponentials, double time) const;
+  Moment distance(const Forms& forms, double time) const
   {
-    const Tables& t = now();
-    const double line = t.line_constant - t.line_compliance * acceleration(time) + t.line_lag * slope_;
-    return t.gap_body < 0 ? line : line + t.body_deflection * bodyDisplacement(t.gap_body, time);
+    const double sign = side();
+    Moment distance{sign * (line_start_ + line_slope_ * time + forms.first), sign * (line_slope_ + forms.second),
+                    sign * forms.third};
+    if (now().gap_body >= 0)
+    {
+      addBody(distance, time);
+    }
+    return distance;
   }
-  double lineRate(double time) const
+  Moment distance() const
   {
-    const Tables& t = now();
-    const double line = -t.line_compliance * slope_;
-    return t.gap_body < 0 ? line : line + t.body_deflection * bodyVelocity(t.gap_body, time);
+    return Moment{side() * gap_, side() * rate_, side() * acceleration_};
   }
+  /// Goes on to the exponentials `there`.
+  void arrive(const Moment& distance, double time);
+  void setDistance(const Moment& distance);
+  bool crossInterval(double slope_change);
+  void refreshSag();
+  /// The gap now with its derivatives.
+  Moment moment() const;
+  /// Makes rate_ and acceleration_ those of now.
+  void completeMoment();
+  /// The line p(t) of the present state and drive.
+  void setLine();
+  void addBody(Moment& distance, double time) const;
   /// The second or a higher derivative of the gap now.
   double derivative(int order) const;
   /// Bounds the same derivative of the polynomial p in the present interval.
@@ -278,8 +327,9 @@ private:
   }
   double curvatureBound() const
   {
-    return bound_ + bodyBound(2);
+    return boundOfDerivative(2) + bodyBound(2);
   }
+  double thirdBound();
   /// The polynomial part of a coordinate without stiffness.
   double bodyDisplacement(Eigen::Index n, double time) const;
   double bodyVelocity(Eigen::Index n, double time) const;
@@ -288,23 +338,36 @@ private:
   /// Bounds a derivative of the exponentials' part of the gap from now on; from the second on that is the gap's own,
   /// but for bodyBound().
   double boundOfDerivative(int order) const;
-  double boundOfDerivative(int order, const Eigen::VectorXd& z) const;
-  void refreshBound();
+  void refreshResolution();
+  /// Of the gap from now on over 2^k ticks.
+  const Spread& spread(int k);
+  /// The same without the modes that are too fast for such a step.
+  const Spread& slowSpread(int k);
 
   double force(double gap) const;
-  void describe(double time, double gap, double rate, const Eigen::VectorXd& displacement,
-                const Eigen::VectorXd& velocity, HistorySample& sample) const;
-  void storeEnergy(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity, double gap,
-                   EnergyAccount& account) const;
+  void describe(double time, double gap, double rate, const Eigen::Ref<const Eigen::VectorXd>& displacement,
+                const Eigen::Ref<const Eigen::VectorXd>& velocity, HistorySample& sample) const;
+  void storeEnergy(EnergyAccount& account) const;
+  void storeEnergy(const Eigen::Ref<const Eigen::VectorXd>& displacement,
+                   const Eigen::Ref<const Eigen::VectorXd>& velocity, double gap, EnergyAccount& account) const;
   void beginHistoryPiece();
   void takeHistory();
   void endHistoryInterval();
 
-  void coordinates(const Eigen::VectorXd& exponentials, double time, Eigen::VectorXd& displacement,
-                   Eigen::VectorXd& velocity) const;
   void toCoordinates();
   void toExponentials();
-  double energy(int state, const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const;
+  /// From padded vectors to padded vectors.
+  void convert(const Eigen::VectorXd& exponentials, double time, Eigen::VectorXd& displacement,
+               Eigen::VectorXd& velocity) const;
+  Conversion conversion(const Eigen::VectorXd& exponentials, double time) const;
+  void mapToOtherState();
+  double storedEnergy() const
+  {
+    const Eigen::Index modes = now().modes();
+    return energy(vectors().displacement.head(modes), vectors().velocity.head(modes));
+  }
+  double energy(const Eigen::Ref<const Eigen::VectorXd>& displacement,
+                const Eigen::Ref<const Eigen::VectorXd>& velocity) const;
   double acceleration(double time) const
   {
     return start_acceleration_ + slope_ * time;
@@ -325,32 +388,33 @@ private:
   void endPiece();
   void closeForce();
   void endEpisode(ImpactSink& sink);
-  void notePeak(double gap, double time);
-  void watchPeak(double start, std::int64_t ticks, double gap_before, double rate_before);
-  struct GapSample
+  void notePeak(double compression, double time);
+  struct Sample
   {
-    std::int64_t tick;
-    double gap, rate;
+    std::int64_t tick;  // since the start of the step
+    Moment distance;
   };
-  /// Of the step in which a peak is searched; at depth 0 still unknown.
-  struct DerivativeBounds
+  /// What a step shows of the peak: its two ends, and the stretch between them without what is too fast.
+  struct Step
   {
-    double third = 0.0;
-    double highest = 0.0;
+    double start;  // time in the interval
+    Sample from, to;
   };
-  void refinePeak(double start, const GapSample& from, const GapSample& to, DerivativeBounds bounds, int depth);
+  double leastPeak() const;
+  void watchPeak(const Step& step, const GapStretch& slow, std::int64_t range);
+  bool findPeak(const Step& step, const GapStretch& slow, std::int64_t range);
+  void searchPeak(const Step& step, int depth);
+  Sample samplePeak(double start, std::int64_t tick);
+  void climb(double start, Sample sample, std::int64_t least, std::int64_t most);
 
   std::shared_ptr<const SwitchedModel> model_;
   bool phasor_;
-  double length_ = 0.0;
-  double inverse_length_ = 0.0;
-  double tick_ = 0.0;
-  int doublings_ = 0;  // K
+  std::array<StateTables, 2> tables_;
+  TickGrid grid_;
   std::int64_t switch_limit_ = switch_allowance;
   double lowest_frequency_ = 0.0;  // of S1 that moves the gap, rad/s
   double drive_frequency_ = 0.0;
   double drive_amplitude_ = 0.0;
-  std::array<Tables, 2> tables_;
 
   int state_ = 0;
   bool in_coordinates_ = true;  // the state is in displacement_ and velocity_, not yet in exponentials
@@ -358,12 +422,18 @@ private:
   double time_ = 0.0;  // in the interval
   double start_acceleration_ = 0.0;
   double slope_ = 0.0;
-  double farthest_ = 0.0;   // greatest |a| of the interval
+  double farthest_ = 0.0;    // greatest |a| of the interval
+  double line_start_ = 0.0;  // p(t) = line_start_ + line_slope_ t, but for a body
+  double line_slope_ = 0.0;
   double body_time_ = 0.0;  // in the interval
   double gap_ = 0.0;
   double rate_ = 0.0;
-  double bound_ = 0.0;       // B, of the exponentials
+  double acceleration_ = 0.0;
   double resolution_ = 0.0;  // rounding error of the gap
+  // Bounds of how far the gap and its rate are from their chords over the next interval.
+  double sag_ = 0.0;
+  double sag_rate_ = 0.0;
+  bool moment_known_ = true;  // whether rate_ and acceleration_ are of now
   std::uint64_t intervals_ = 0;
   std::uint64_t switches_ = 0;
   std::uint64_t switch_limit_reached_ = 0;

@@ -1,5 +1,7 @@
 #include "lanes.h"
 
+#include <cmath>
+#include <complex>
 #include <random>
 #include <vector>
 
@@ -31,6 +33,47 @@ double dotInLanes(const double* x, const double* y, Eigen::Index size)
   return (sums[0] + sums[2]) + (sums[1] + sums[3]);
 }
 
+struct Exponentials
+{
+  explicit Exponentials(Eigen::Index size)
+      : half(static_cast<std::size_t>(size)),
+        z(randomNumbers(2 * size)),
+        factor_re(randomNumbers(3 * size)),
+        factor_im(randomNumbers(3 * size)),
+        exponent_re(randomNumbers(size)),
+        exponent_im(randomNumbers(size))
+  {
+  }
+  Growth growth() const
+  {
+    return Growth{factor_re.data(), factor_im.data(), exponent_re.data(), exponent_im.data(),
+                  static_cast<Eigen::Index>(half)};
+  }
+  void multiply(std::vector<double>& z_to, std::size_t column) const
+  {
+    for (std::size_t n = 0; n < half; ++n)
+    {
+      const double x = z_to[n];
+      const double y = z_to[half + n];
+      const double f = factor_re[half * column + n];
+      const double g = factor_im[half * column + n];
+      z_to[n] = x + (x * f - y * g);
+      z_to[half + n] = y + (x * g + y * f);
+    }
+  }
+
+  std::size_t half;
+  std::vector<double> z, factor_re, factor_im, exponent_re, exponent_im;
+};
+
+void expectForms(const Forms& forms, const std::vector<double>& weights, const std::vector<double>& z)
+{
+  const auto size = static_cast<Eigen::Index>(z.size());
+  EXPECT_NEAR(forms.first, dotInLanes(weights.data(), z.data(), size), 1e-12);
+  EXPECT_NEAR(forms.second, dotInLanes(weights.data() + size, z.data(), size), 1e-12);
+  EXPECT_NEAR(forms.third, dotInLanes(weights.data() + 2 * size, z.data(), size), 1e-12);
+}
+
 class Lanes : public ::testing::TestWithParam<Eigen::Index>
 {
 };
@@ -46,20 +89,33 @@ TEST(Padded, isTheNextMultiple)
 
 // Every processor must give the bits of these plain loops.
 
-TEST_P(Lanes, growsByAFactorLessOne)
+TEST_P(Lanes, growsByTabulatedFactors)
 {
-  const Eigen::Index size = GetParam();
-  std::vector<double> re = randomNumbers(size);
-  std::vector<double> im = randomNumbers(size);
-  const std::vector<double> f = randomNumbers(size);
-  const std::vector<double> g = randomNumbers(size);
-  const std::vector<double> x = re;
-  const std::vector<double> y = im;
-  growBy(re.data(), im.data(), f.data(), g.data(), size);
-  for (std::size_t n = 0; n < re.size(); ++n)
+  const Exponentials exponentials(GetParam());
+  std::vector<double> expected = exponentials.z;
+  for (const std::size_t column : {0u, 2u})
   {
-    EXPECT_EQ(re[n], x[n] + (x[n] * f[n] - y[n] * g[n]));
-    EXPECT_EQ(im[n], y[n] + (x[n] * g[n] + y[n] * f[n]));
+    exponentials.multiply(expected, column);
+  }
+  std::vector<double> z = exponentials.z;
+  grow(exponentials.growth(), 0b101, 0.0, z.data(), z.data());
+  EXPECT_EQ(z, expected);
+}
+
+TEST_P(Lanes, growsByTheSeries)
+{
+  const Exponentials exponentials(GetParam());
+  const double ticks = 1.0e-3;
+  std::vector<double> z(exponentials.z.size());
+  grow(exponentials.growth(), 0, ticks, exponentials.z.data(), z.data());
+  const std::size_t half = exponentials.half;
+  for (std::size_t n = 0; n < half; ++n)
+  {
+    const std::complex<double> expected =
+        std::complex<double>(exponentials.z[n], exponentials.z[half + n]) *
+        std::exp(ticks * std::complex<double>(exponentials.exponent_re[n], exponentials.exponent_im[n]));
+    EXPECT_NEAR(z[n], expected.real(), 4e-16);
+    EXPECT_NEAR(z[half + n], expected.imag(), 4e-16);
   }
 }
 
@@ -82,45 +138,90 @@ TEST_P(Lanes, multipliesAndSumsInOneOrder)
   EXPECT_EQ(dot(x.data(), y.data(), GetParam()), dotInLanes(x.data(), y.data(), GetParam()));
 }
 
+TEST_P(Lanes, growsAndEvaluatesInOnePass)
+{
+  const Exponentials exponentials(GetParam());
+  const auto size = static_cast<Eigen::Index>(exponentials.z.size());
+  const std::vector<double> weights = randomNumbers(3 * size);
+  const std::vector<double> other_weights = randomNumbers(3 * size);
+  for (const double series : {0.0, 7.0, -7.0})
+  {
+    std::vector<double> expected(exponentials.z.size());
+    grow(exponentials.growth(), 5, series, exponentials.z.data(), expected.data());
+    std::vector<double> z(expected.size());
+    expectForms(growEvaluate(exponentials.growth(), 5, series, exponentials.z.data(), weights.data(), z.data()),
+                weights, z);
+    EXPECT_EQ(z, expected);
+    const TwoForms two = growEvaluateTwo(exponentials.growth(), 5, series, exponentials.z.data(), weights.data(),
+                                         other_weights.data(), z.data());
+    EXPECT_EQ(z, expected);
+    expectForms(two.first, weights, z);
+    expectForms(two.second, other_weights, z);
+  }
+}
+
 TEST_P(Lanes, doesAWholeIntervalInOnePass)
 {
-  const Eigen::Index half = GetParam();
-  std::vector<double> z = randomNumbers(2 * half);
+  const Exponentials exponentials(GetParam());
+  const auto half = static_cast<Eigen::Index>(exponentials.half);
   const std::vector<double> kick = randomNumbers(2 * half);
-  const std::vector<double> first = randomNumbers(2 * half);
-  const std::vector<double> second = randomNumbers(2 * half);
-  const std::vector<double> f = randomNumbers(half);
-  const std::vector<double> g = randomNumbers(half);
-  std::vector<double> expected = z;
+  const std::vector<double> weights = randomNumbers(2 * half);
+  std::vector<double> expected = exponentials.z;
   addScaled(expected.data(), 0.3, kick.data(), 2 * half);
-  growBy(expected.data(), expected.data() + half, f.data(), g.data(), half);
-  std::vector<double> kicked = randomNumbers(2 * half);
-  std::vector<double> expected_kicked = kicked;
-  addScaled(expected_kicked.data(), 0.3, z.data(), 2 * half);
-
-  const Forms forms = kickGrowEvaluate(z.data(), kicked.data(), 0.3, kick.data(), f.data(), g.data(), first.data(),
-                                       second.data(), half);
+  exponentials.multiply(expected, 1);
+  std::vector<double> z(expected.size());
+  const double form =
+      kickGrowEvaluate(exponentials.growth(), 1, exponentials.z.data(), 0.3, kick.data(), weights.data(), z.data());
   EXPECT_EQ(z, expected);
-  EXPECT_EQ(kicked, expected_kicked);
-  const auto form = [&](const std::vector<double>& weights)
+  EXPECT_NEAR(form, dotInLanes(weights.data(), z.data(), 2 * half), 1e-12);
+}
+
+TEST_P(Lanes, evaluatesThreeForms)
+{
+  const Eigen::Index size = GetParam();
+  const std::vector<double> weights = randomNumbers(3 * size);
+  const std::vector<double> z = randomNumbers(size);
+  const Forms forms = evaluateForms(weights.data(), z.data(), size);
+  EXPECT_EQ(forms.first, dotInLanes(weights.data(), z.data(), size));
+  EXPECT_EQ(forms.second, dotInLanes(weights.data() + size, z.data(), size));
+  EXPECT_EQ(forms.third, dotInLanes(weights.data() + 2 * size, z.data(), size));
+}
+
+TEST_P(Lanes, sumsSizes)
+{
+  const Eigen::Index half = GetParam();
+  const std::vector<double> weights = randomNumbers(half);
+  const std::vector<double> z = randomNumbers(2 * half);
+  std::vector<double> sizes(static_cast<std::size_t>(half));
+  for (std::size_t n = 0; n < sizes.size(); ++n)
   {
-    // The lanes of both halves are added before those are.
-    double sums[lanes] = {};
-    for (Eigen::Index lane = 0; lane < lanes; ++lane)
+    sizes[n] = std::abs(z[n]) + std::abs(z[sizes.size() + n]);
+  }
+  EXPECT_EQ(weightedSize(weights.data(), z.data(), half), dotInLanes(weights.data(), sizes.data(), half));
+}
+
+TEST_P(Lanes, multipliesTwoVectors)
+{
+  const Eigen::Index rows = GetParam();
+  const Eigen::Index columns = rows + 1;
+  const std::vector<double> matrix = randomNumbers(rows * columns);
+  const std::vector<double> x = randomNumbers(columns);
+  const std::vector<double> y = randomNumbers(columns);
+  std::vector<double> x_to(static_cast<std::size_t>(rows));
+  std::vector<double> y_to = x_to;
+  multiplyTwo(matrix.data(), rows, columns, x.data(), y.data(), x_to.data(), y_to.data());
+  for (std::size_t row = 0; row < x_to.size(); ++row)
+  {
+    double x_sum = 0.0;
+    double y_sum = 0.0;
+    for (std::size_t column = 0; column < x.size(); ++column)
     {
-      double re = 0.0;
-      double im = 0.0;
-      for (Eigen::Index n = lane; n < half; n += lanes)
-      {
-        re += weights[static_cast<std::size_t>(n)] * z[static_cast<std::size_t>(n)];
-        im += weights[static_cast<std::size_t>(half + n)] * z[static_cast<std::size_t>(half + n)];
-      }
-      sums[lane] = re + im;
+      x_sum += matrix[column * x_to.size() + row] * x[column];
+      y_sum += matrix[column * x_to.size() + row] * y[column];
     }
-    return (sums[0] + sums[2]) + (sums[1] + sums[3]);
-  };
-  EXPECT_EQ(forms.first, form(first));
-  EXPECT_EQ(forms.second, form(second));
+    EXPECT_EQ(x_to[row], x_sum);
+    EXPECT_EQ(y_to[row], y_sum);
+  }
 }
 
 TEST_P(Lanes, quadraticFormIsTheSumOfItsTerms)

@@ -13,7 +13,8 @@ struct StructureEnergy
                             ///< to diag(omega_n^2)
 
   /// J. Does not allocate.
-  double energy(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity) const
+  double energy(const Eigen::Ref<const Eigen::VectorXd>& displacement,
+                const Eigen::Ref<const Eigen::VectorXd>& velocity) const
   {
     double sum = 0.0;
     for (Eigen::Index n = 0; n < kinetic.cols(); ++n)
