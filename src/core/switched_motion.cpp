@@ -164,11 +164,6 @@ void SwitchedMotion::takeOver(SwitchedMotion& previous, ImpactSink& sink)
   Vectors& to = vectors();
   const Eigen::Index modes = linearState(state_).size();
   const bool same_modes = model_->stiffness() == before.stiffness() && linearState(1).size() == before.contact().size();
-  const auto map = [](const Eigen::MatrixXd& mapping, const Vectors& source, Vectors& result)
-  {
-    multiplyTwo(mapping.data(), mapping.rows(), mapping.cols(), source.displacement.data(), source.velocity.data(),
-                result.displacement.data(), result.velocity.data());
-  };
   if (previous.state_ == 0 && state_ == 1)
   {
     map(tables_[1].mapping, from, to);
@@ -294,14 +289,17 @@ void SwitchedMotion::toCoordinates()
   convert(vectors().exponentials, time_, vectors().displacement, vectors().velocity);
 }
 
+void SwitchedMotion::map(const Eigen::MatrixXd& mapping, const Vectors& from, Vectors& to)
+{
+  multiplyTwo(mapping.data(), mapping.rows(), mapping.cols(), from.displacement.data(), from.velocity.data(),
+              to.displacement.data(), to.velocity.data());
+}
+
 void SwitchedMotion::mapToOtherState()
 {
   const Vectors& from = vectors();
   state_ = 1 - state_;
-  Vectors& to = vectors();
-  const Eigen::MatrixXd& mapping = now().mapping;
-  multiplyTwo(mapping.data(), mapping.rows(), mapping.cols(), from.displacement.data(), from.velocity.data(),
-              to.displacement.data(), to.velocity.data());
+  map(now().mapping, from, vectors());
 }
 
 void SwitchedMotion::toExponentials()

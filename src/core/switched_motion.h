@@ -360,6 +360,8 @@ private:
   void convert(const Eigen::VectorXd& exponentials, double time, Eigen::VectorXd& displacement,
                Eigen::VectorXd& velocity) const;
   Conversion conversion(const Eigen::VectorXd& exponentials, double time) const;
+  /// Displacement and velocity to the coordinates of the state whose mapping it is.
+  static void map(const Eigen::MatrixXd& mapping, const Vectors& from, Vectors& to);
   void mapToOtherState();
   double storedEnergy() const
   {
