@@ -12,8 +12,6 @@ namespace
 {
 /// What is waiting when the end comes is still simulated, for at most this long, s.
 constexpr double longest_drain = 5.0;
-/// roscpp sends in the background and drops at its end what it has not sent yet, s.
-constexpr double linger = 0.3;
 }  // namespace
 
 int main(int argc, char** argv)
@@ -36,7 +34,6 @@ int main(int argc, char** argv)
       queue.callOne();
     }
     simulator.finish();
-    ros::WallDuration(linger).sleep();
   }
   catch (const std::exception& error)
   {

@@ -4,6 +4,7 @@
 
 #include <geometry_msgs/WrenchStamped.h>
 #include <std_msgs/Float64.h>
+#include <boost/make_shared.hpp>
 
 #include "text.h"
 #include "vibro_impact/config/configuration.h"
@@ -15,6 +16,9 @@ namespace
 {
 /// Seconds between two words about a topic on which nothing comes.
 constexpr double waiting_period = 5.0;
+
+/// roscpp sends in the background and drops at its end what it has not sent yet, s.
+constexpr double linger = 0.3;
 
 /// An impact is small and must not be lost: this holds minutes of them for a subscriber that hangs.
 constexpr std::uint32_t impact_queue = 100000;
@@ -32,34 +36,29 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(readParameters(private_node)),
       simulation_(std::make_shared<const core::SwitchedModel>(parameters_.system), parameters_.limits),
       extremes_(parameters_.mirror_rate),
-      guard_(parameters_.max_input_age),
-      statistics_(node.resolveName("base_excitation"), parameters_.max_input_age),
+      guard_(parameters_.thresholds.max_input_age),
+      input_statistics_(node.resolveName("base_excitation"), parameters_.thresholds),
+      computing_statistics_(parameters_.thresholds),
+      queue_statistics_({&gap_, &force_, &impact_, &stream_start_}, parameters_.thresholds),
+      model_statistics_(parameters_.thresholds),
       diagnostics_(node, private_node, private_node.getNamespace())
 {
   const std::uint32_t queue_size = parameters_.queue_size;
-  gap_publisher_ = node.advertise<Gap>("gap", queue_size);
-  force_publisher_ = node.advertise<ContactForce>("contact_force", queue_size);
-  impact_publisher_ = node.advertise<Impact>("impact", impact_queue);
+  gap_.advertise<Gap>(node, "gap", queue_size);
+  force_.advertise<ContactForce>(node, "contact_force", queue_size);
+  impact_.advertise<Impact>(node, "impact", impact_queue);
+  stream_start_.advertise<StreamStart>(node, "stream_start", queue_size);
   wrench_publisher_ = node.advertise<geometry_msgs::WrenchStamped>("contact_wrench", mirror_queue);
   gap_now_publisher_ = node.advertise<std_msgs::Float64>("gap_now", mirror_queue);
   model_info_publisher_ = node.advertise<ModelInfo>("model_info", StreamSimulation::max_waiting_changes, true);
 
-  // The updater's own timing follows ros::Time, which stands still while a bag that gives the time is paused.
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("Simulation",
-                   [this](diagnostic_updater::DiagnosticStatusWrapper& status)
-                   {
-                     const std::optional<double> age =
-                         last_input_ ? std::optional<double>((ros::SteadyTime::now() - *last_input_).toSec())
-                                     : std::nullopt;
-                     statistics_.report(age, status);
-                     report(simulation_.energyAccount(), status);
-                   });
+  addDiagnostics();
   diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
                                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
   waiting_timer_ = node.createWallTimer(ros::WallDuration(waiting_period), &Simulator::onWaiting, this);
 
   reset_server_ = private_node.advertiseService("reset", &Simulator::onReset, this);
+  pause_server_ = private_node.advertiseService("pause", &Simulator::onPause, this);
   set_contact_server_ = private_node.advertiseService("set_contact", &Simulator::onSetContact, this);
   excitation_subscriber_ =
       node.subscribe("base_excitation", queue_size, &Simulator::onExcitation, this, ros::TransportHints().tcpNoDelay());
@@ -70,9 +69,32 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   ROS_INFO("simulating what comes on topic %s", excitation_subscriber_.getTopic().c_str());
 }
 
+void Simulator::addDiagnostics()
+{
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+  // The updater's own timing follows ros::Time, which stands still while a bag that gives the time is paused.
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("Input", [this](Status& status) { input_statistics_.report(inputAge(), paused_, status); });
+  diagnostics_.add("Real-time factor", [this](Status& status) { computing_statistics_.report(status); });
+  diagnostics_.add("Output queues", [this](Status& status) { queue_statistics_.report(status); });
+  diagnostics_.add("Model", [this](Status& status) { model_statistics_.report(simulation_.energyAccount(), status); });
+}
+
+std::optional<double> Simulator::inputAge() const
+{
+  return last_input_ ? std::optional<double>((ros::SteadyTime::now() - *last_input_).toSec()) : std::nullopt;
+}
+
 void Simulator::finish()
 {
-  publish(simulation_.reset());
+  // A callback that is running on another thread (a nodelet's) ends first.
+  excitation_subscriber_.shutdown();
+  for (ros::ServiceServer* server : {&reset_server_, &pause_server_, &set_contact_server_})
+  {
+    server->shutdown();
+  }
+  publish(rest("the stream ended"));
+  ros::WallDuration(linger).sleep();
 }
 
 void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& event)
@@ -81,23 +103,38 @@ void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& even
   waiting_timer_.stop();
   last_input_ = start;
   const std::string& publisher = event.getPublisherName();
+  const BaseExcitation& message = *event.getConstMessage();
+  const std::size_t samples = message.acceleration.size();
   try
   {
     if (!guard_.admit(publisher, excitation_subscriber_.getNumPublishers(), start.toSec()))
     {
-      statistics_.countSecondPublisher(guard_.source(), publisher);
+      input_statistics_.countSecondPublisher(guard_.source(), publisher, samples);
       ROS_ERROR_COND(publishers_.due(), "two publishers on topic %s: %s and %s; blocks of the second are refused",
                      excitation_subscriber_.getTopic().c_str(), guard_.source().c_str(), publisher.c_str());
       return;
     }
-    fromMessage(*event.getConstMessage(), excitation_);
+    if (paused_)
+    {
+      input_statistics_.countDiscarded(samples);
+      return;
+    }
+    fromMessage(message, excitation_);
     const StreamSimulation::Answer& answer = simulation_.advance(excitation_);
-    statistics_.count(answer, (ros::SteadyTime::now() - start).toSec());
+    input_statistics_.count(answer.verdict, samples);
     log(answer.verdict);
+    if (answer.verdict.action == Verdict::Action::Refuse)
+    {
+      return;
+    }
+    model_statistics_.count(answer);
     publish(answer);
     // A node that computes hears nothing; that is no silence of the publisher's.
     last_input_ = ros::SteadyTime::now();
     guard_.listenAgain(last_input_->toSec());
+    const std::uint64_t bridged = answer.verdict.action == Verdict::Action::Bridge ? answer.verdict.missing : 0;
+    computing_statistics_.count(static_cast<double>(bridged + samples) * excitation_.sample_period,
+                                (*last_input_ - start).toSec());
   }
   catch (const std::exception& error)
   {
@@ -105,13 +142,40 @@ void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& even
   }
 }
 
+const StreamSimulation::Answer& Simulator::rest(const std::string& reason)
+{
+  start_reason_ = reason;
+  return simulation_.reset();
+}
+
 bool Simulator::onReset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response)
 {
-  const StreamSimulation::Answer& answer = simulation_.reset();
-  statistics_.countReset(answer);
+  const StreamSimulation::Answer& answer = rest("reset");
+  model_statistics_.countReset(answer);
   publish(answer);
   response.success = true;
   response.message = answer.impacts.empty() ? "at rest" : "at rest; an open impact was cut short";
+  return true;
+}
+
+bool Simulator::onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response)
+{
+  response.success = true;
+  if (paused_ == (request.data != 0))
+  {
+    response.message = paused_ ? "paused already" : "not paused";
+    return true;
+  }
+  paused_ = request.data != 0;
+  response.message = "goes on from rest with the next block";
+  if (paused_)
+  {
+    const StreamSimulation::Answer& answer = rest("paused until then");
+    model_statistics_.count(answer);
+    publish(answer);
+    response.message = answer.impacts.empty() ? "paused" : "paused; an open impact was cut short";
+  }
+  ROS_INFO("%s", response.message.c_str());
   return true;
 }
 
@@ -149,18 +213,26 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
   }
   for (const StampedImpact& impact : answer.impacts)
   {
-    toMessage(impact, impact_);
-    impact_publisher_.publish(impact_);
+    const auto message = boost::make_shared<Impact>();
+    toMessage(impact, *message);
+    impact_.publish<Impact>(message);
   }
   if (answer.gap.values.empty())
   {
     return;
   }
-  toMessage(answer.force, force_);
-  force_publisher_.publish(force_);
+  if (answer.verdict.action == Verdict::Action::Start || answer.verdict.action == Verdict::Action::Restart)
+  {
+    publishStart(answer);
+  }
+  // New messages each time: subscribers in this process keep the ones that they were given.
+  const auto force = boost::make_shared<ContactForce>();
+  toMessage(answer.force, *force);
+  force_.publish<ContactForce>(force);
   // The gap comes last: who has it knows that all of the block's answer is on its way.
-  toMessage(answer.gap, gap_);
-  gap_publisher_.publish(gap_);
+  const auto gap = boost::make_shared<Gap>();
+  toMessage(answer.gap, *gap);
+  gap_.publish<Gap>(gap);
   for (const Extremes& extremes : extremes_.take(answer.gap, answer.force))
   {
     geometry_msgs::WrenchStamped wrench;
@@ -172,6 +244,18 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
     gap_now.data = extremes.gap;
     gap_now_publisher_.publish(gap_now);
   }
+}
+
+void Simulator::publishStart(const StreamSimulation::Answer& answer)
+{
+  const bool restarted = answer.verdict.action == Verdict::Action::Restart;
+  const auto start = boost::make_shared<StreamStart>();
+  start->header.stamp = toTime(answer.gap.stamp);
+  start->header.frame_id = base_frame;
+  start->seq = answer.gap.seq;
+  start->sample_period = answer.gap.sample_period;
+  start->reason = restarted ? answer.verdict.reason : start_reason_;
+  stream_start_.publish<StreamStart>(start);
 }
 
 void Simulator::publishModelInfo(const core::SwitchedModel& model, std::uint64_t seq, const ros::Time& stamp)

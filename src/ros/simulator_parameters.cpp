@@ -17,6 +17,7 @@ constexpr double highest_acceleration = 1.0e9;
 constexpr double longest_time = 60.0;
 constexpr double longest_wait = 3600.0;
 constexpr double highest_mirror_rate = 1.0e4;
+constexpr double highest_threshold = 1.0e9;
 constexpr std::uint32_t longest_queue = 1000000;
 
 std::string quoted(const std::string& text)
@@ -43,6 +44,19 @@ std::string quoted(const std::string& text)
   return result + '"';
 }
 
+void readThresholds(ParameterReader& reader, DiagnosticThresholds& thresholds)
+{
+  const auto read = [&reader](const char* key, double& value, double most, const char* unit)
+  { value = reader.nonNegative(key, value, most, unit); };
+  thresholds.max_input_age = reader.positive("max_input_age", thresholds.max_input_age, longest_wait, " (s)");
+  read("warn_lost_samples", thresholds.warn_lost_samples, highest_threshold, "");
+  read("warn_real_time_factor", thresholds.warn_real_time_factor, highest_threshold, "");
+  read("error_real_time_factor", thresholds.error_real_time_factor, highest_threshold, "");
+  read("warn_block_load", thresholds.warn_block_load, highest_threshold, "");
+  read("warn_queue_share", thresholds.warn_queue_share, 1.0, "");
+  read("warn_energy_closure", thresholds.warn_energy_closure, highest_threshold, "");
+}
+
 /// With a point or an exponent, so that it does not become an integer on the way.
 std::string decimal(double value)
 {
@@ -66,7 +80,7 @@ SimulatorParameters parseSimulatorParameters(const XmlRpcValue& tree, const std:
   limits.max_stamp_jitter = reader.positive("max_stamp_jitter", limits.max_stamp_jitter, longest_time, " (s)");
   parameters.mirror_rate = reader.positive("mirror_rate", parameters.mirror_rate, highest_mirror_rate, " (Hz)");
   parameters.queue_size = reader.count("queue_size", parameters.queue_size, longest_queue);
-  parameters.max_input_age = reader.positive("max_input_age", parameters.max_input_age, longest_wait, " (s)");
+  readThresholds(reader, parameters.thresholds);
   parameters.diagnostic_period =
       reader.positive("diagnostic_period", parameters.diagnostic_period, longest_wait, " (s)");
   reader.rejectUnknown();

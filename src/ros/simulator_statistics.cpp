@@ -1,74 +1,66 @@
 #include "vibro_impact/ros/simulator_statistics.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace vibro_impact::graph
 {
 using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
 
-SimulatorStatistics::SimulatorStatistics(const std::string& topic, double max_input_age)
-    : topic_(topic), max_input_age_(max_input_age)
+InputStatistics::InputStatistics(std::string topic, const DiagnosticThresholds& thresholds)
+    : topic_(std::move(topic)), thresholds_(thresholds)
 {
 }
 
-void SimulatorStatistics::count(const StreamSimulation::Answer& answer, double computing_time)
+void InputStatistics::count(const Verdict& verdict, std::size_t samples)
 {
-  if (answer.verdict.action == Verdict::Action::Refuse)
+  if (verdict.action == Verdict::Action::Refuse)
   {
     ++totals_.blocks_refused;
-    last_refusal_ = answer.verdict.reason;
+    totals_.samples_refused += samples;
+    last_refusal_ = verdict.reason;
     return;
   }
-  const std::uint64_t samples = answer.gap.values.size();
-  const std::uint64_t missing = answer.verdict.missing;
   ++totals_.blocks_accepted;
-  totals_.samples_lost += missing;
-  totals_.blocks_lost += missing / samples + (missing % samples != 0 ? 1 : 0);
-  totals_.stream_time += static_cast<double>(samples) * answer.gap.sample_period;
-  if (answer.verdict.action == Verdict::Action::Bridge)
+  totals_.samples_accepted += samples;
+  totals_.samples_lost += verdict.missing;
+  totals_.blocks_lost += verdict.missing / samples + (verdict.missing % samples != 0 ? 1 : 0);
+  if (verdict.action == Verdict::Action::Bridge)
   {
     ++totals_.gaps_bridged;
-    totals_.samples_bridged += missing;
-    totals_.stream_time += static_cast<double>(missing) * answer.gap.sample_period;
+    totals_.samples_bridged += verdict.missing;
   }
-  if (answer.verdict.action == Verdict::Action::Restart)
+  if (verdict.action == Verdict::Action::Restart)
   {
     ++totals_.restarts;
   }
-  totals_.impacts += answer.impacts.size();
-  totals_.contact_changes += answer.contact_changes.size();
-  totals_.switch_limits += answer.switch_limits;
-  totals_.computing_time += computing_time;
 }
 
-void SimulatorStatistics::countSecondPublisher(const std::string& source, const std::string& second)
+void InputStatistics::countSecondPublisher(const std::string& source, const std::string& second, std::size_t samples)
 {
   ++totals_.blocks_refused;
   ++totals_.blocks_of_second_publisher;
+  totals_.samples_refused += samples;
   publishers_ = source + " and " + second;
   last_refusal_ = "two publishers: " + publishers_;
 }
 
-void SimulatorStatistics::countReset(const StreamSimulation::Answer& answer)
+void InputStatistics::countDiscarded(std::size_t samples)
 {
-  ++totals_.resets;
-  totals_.impacts += answer.impacts.size();
+  ++totals_.blocks_discarded;
+  totals_.samples_discarded += samples;
 }
 
-void SimulatorStatistics::report(std::optional<double> input_age, diagnostic_updater::DiagnosticStatusWrapper& status)
+void InputStatistics::report(std::optional<double> input_age, bool paused, DiagnosticStatusWrapper& status)
 {
-  const double computing_time = totals_.computing_time - reported_.computing_time;
-  if (computing_time > 0.0)
-  {
-    real_time_factor_ = (totals_.stream_time - reported_.stream_time) / computing_time;
-  }
-
-  status.summary(DiagnosticStatus::OK, "simulating");
+  status.summary(DiagnosticStatus::OK, "receiving");
   if (!input_age)
   {
     status.mergeSummary(DiagnosticStatus::STALE, "still waiting for data on topic " + topic_);
   }
-  else if (*input_age > max_input_age_)
+  else if (*input_age > thresholds_.max_input_age)
   {
     status.mergeSummaryf(DiagnosticStatus::STALE, "no data on topic %s for %.1f s: time stands still", topic_.c_str(),
                          *input_age);
@@ -81,35 +73,33 @@ void SimulatorStatistics::report(std::optional<double> input_age, diagnostic_upd
   {
     status.mergeSummary(DiagnosticStatus::ERROR, "block refused: " + last_refusal_);
   }
-  if (totals_.switch_limits > reported_.switch_limits)
-  {
-    status.mergeSummary(DiagnosticStatus::ERROR, "bound on switches in a sample interval reached");
-  }
   if (totals_.restarts > reported_.restarts)
   {
     status.mergeSummary(DiagnosticStatus::WARN, "restarted from rest");
   }
-  if (totals_.gaps_bridged > reported_.gaps_bridged)
+  const std::uint64_t lost = totals_.samples_lost - reported_.samples_lost;
+  if (static_cast<double>(lost) > thresholds_.warn_lost_samples)
   {
-    status.mergeSummary(DiagnosticStatus::WARN, "missing samples bridged");
+    const bool bridged = totals_.samples_bridged - reported_.samples_bridged == lost;
+    status.mergeSummaryf(DiagnosticStatus::WARN, "%llu missing samples%s", static_cast<unsigned long long>(lost),
+                         bridged ? " bridged" : "");
   }
-  if (computing_time > 0.0 && real_time_factor_ < 1.0)
+  if (paused)
   {
-    status.mergeSummary(DiagnosticStatus::WARN, "slower than real time");
+    status.mergeSummary(DiagnosticStatus::WARN, "paused: blocks are discarded");
   }
 
-  status.addf("Real-time factor", "%.4g", real_time_factor_);
   status.add("Blocks accepted", totals_.blocks_accepted);
   status.add("Blocks refused", totals_.blocks_refused);
+  status.add("Blocks discarded", totals_.blocks_discarded);
   status.add("Blocks lost", totals_.blocks_lost);
+  status.add("Samples accepted", totals_.samples_accepted);
+  status.add("Samples refused", totals_.samples_refused);
+  status.add("Samples discarded", totals_.samples_discarded);
   status.add("Samples lost", totals_.samples_lost);
-  status.add("Gaps bridged", totals_.gaps_bridged);
   status.add("Samples bridged", totals_.samples_bridged);
+  status.add("Gaps bridged", totals_.gaps_bridged);
   status.add("Restarts", totals_.restarts);
-  status.add("Resets", totals_.resets);
-  status.add("Impacts", totals_.impacts);
-  status.add("Contact changes", totals_.contact_changes);
-  status.add("Switch limit reached", totals_.switch_limits);
   if (input_age)
   {
     status.addf("Input age (s)", "%.3f", *input_age);
@@ -122,8 +112,89 @@ void SimulatorStatistics::report(std::optional<double> input_age, diagnostic_upd
   reported_ = totals_;
 }
 
-void report(const core::EnergyAccount& account, diagnostic_updater::DiagnosticStatusWrapper& status)
+ComputingStatistics::ComputingStatistics(const DiagnosticThresholds& thresholds) : thresholds_(thresholds)
 {
+}
+
+void ComputingStatistics::count(double stream_time, double computing_time)
+{
+  period_.stream_time += stream_time;
+  period_.computing_time += computing_time;
+  period_.worst_time = std::max(period_.worst_time, computing_time);
+  period_.worst_load = std::max(period_.worst_load, computing_time / stream_time);
+  worst_time_ = std::max(worst_time_, computing_time);
+}
+
+void ComputingStatistics::report(DiagnosticStatusWrapper& status)
+{
+  const bool computed = period_.computing_time > 0.0;
+  if (computed)
+  {
+    reported_ = std::exchange(period_, {});
+  }
+  const double factor = reported_.computing_time > 0.0 ? reported_.stream_time / reported_.computing_time : 0.0;
+  status.summary(DiagnosticStatus::OK, "faster than real time");
+  if (!computed)
+  {
+    status.summary(DiagnosticStatus::OK, "nothing computed since the last report");
+  }
+  else if (factor < thresholds_.error_real_time_factor)
+  {
+    status.summaryf(DiagnosticStatus::ERROR, "real-time factor %.3g, below %.3g", factor,
+                    thresholds_.error_real_time_factor);
+  }
+  else if (factor < thresholds_.warn_real_time_factor)
+  {
+    status.summaryf(DiagnosticStatus::WARN, "real-time factor %.3g, below %.3g", factor,
+                    thresholds_.warn_real_time_factor);
+  }
+  if (computed && reported_.worst_load > thresholds_.warn_block_load)
+  {
+    status.mergeSummaryf(DiagnosticStatus::WARN, "a block took %.3g times the time it lasts", reported_.worst_load);
+  }
+  status.addf("Real-time factor", "%.4g", factor);
+  status.addf("Worst block since last (s)", "%.3g", reported_.worst_time);
+  status.addf("Worst block since last, share of its duration", "%.3g", reported_.worst_load);
+  status.addf("Worst block (s)", "%.3g", worst_time_);
+}
+
+ModelStatistics::ModelStatistics(const DiagnosticThresholds& thresholds) : thresholds_(thresholds)
+{
+}
+
+void ModelStatistics::count(const StreamSimulation::Answer& answer)
+{
+  totals_.impacts += answer.impacts.size();
+  totals_.impacts_cut_short +=
+      static_cast<std::uint64_t>(std::count_if(answer.impacts.begin(), answer.impacts.end(),
+                                               [](const StampedImpact& impact) { return impact.impact.cut_short; }));
+  totals_.contact_changes += answer.contact_changes.size();
+  totals_.switch_limits += answer.switch_limits;
+}
+
+void ModelStatistics::countReset(const StreamSimulation::Answer& answer)
+{
+  ++totals_.resets;
+  count(answer);
+}
+
+void ModelStatistics::report(const core::EnergyAccount& account, DiagnosticStatusWrapper& status)
+{
+  const double closure = account.closure();
+  status.summary(DiagnosticStatus::OK, "simulating");
+  if (totals_.switch_limits > reported_.switch_limits)
+  {
+    status.mergeSummary(DiagnosticStatus::ERROR, "bound on switches in a sample interval reached");
+  }
+  if (!(std::abs(closure) <= thresholds_.warn_energy_closure))
+  {
+    status.mergeSummaryf(DiagnosticStatus::WARN, "the energy account closes to %.2g only", closure);
+  }
+  status.add("Impacts", totals_.impacts);
+  status.add("Impacts cut short", totals_.impacts_cut_short);
+  status.add("Contact changes", totals_.contact_changes);
+  status.add("Resets", totals_.resets);
+  status.add("Switch limit reached", totals_.switch_limits);
   const std::pair<const char*, double> entries[] = {
       {"Energy at the start (J)", account.initial},
       {"Energy in structure 1 (J)", account.structure1},
@@ -135,12 +206,52 @@ void report(const core::EnergyAccount& account, diagnostic_updater::DiagnosticSt
       {"Dissipated free (J)", account.dissipated_free},
       {"Dissipated in contact (J)", account.dissipated_contact},
       {"Lost by the mapping (J)", account.mapping_loss},
-      {"Energy account closes to", account.closure()},
+      {"Energy account closes to", closure},
   };
   for (const auto& [name, value] : entries)
   {
     status.addf(name, "%.9g", value);
   }
+  reported_ = totals_;
+}
+
+OutputQueueStatistics::OutputQueueStatistics(std::vector<const OutputQueue*> queues,
+                                             const DiagnosticThresholds& thresholds)
+    : thresholds_(thresholds)
+{
+  for (const OutputQueue* queue : queues)
+  {
+    queues_.emplace_back(queue, 0);
+  }
+}
+
+void OutputQueueStatistics::report(DiagnosticStatusWrapper& status)
+{
+  status.summary(DiagnosticStatus::OK, "subscribers keep up");
+  std::uint64_t dropped = 0;
+  for (auto& [queue, reported] : queues_)
+  {
+    const std::string& topic = queue->publisher().getTopic();
+    const MessageLedger::Counts counts = queue->counts();
+    if (counts.dropped > reported)
+    {
+      status.mergeSummaryf(DiagnosticStatus::ERROR, "%llu messages on topic %s dropped for a subscriber that is slow",
+                           static_cast<unsigned long long>(counts.dropped - reported), topic.c_str());
+    }
+    else if (queue->queueSize() > 0 &&
+             static_cast<double>(counts.waiting) > thresholds_.warn_queue_share * queue->queueSize())
+    {
+      status.mergeSummaryf(DiagnosticStatus::WARN, "%llu messages on topic %s wait for a subscriber",
+                           static_cast<unsigned long long>(counts.waiting), topic.c_str());
+    }
+    dropped += counts.dropped;
+    reported = counts.dropped;
+    status.add(topic + ": subscribers", queue->publisher().getNumSubscribers());
+    status.add(topic + ": messages to other processes", counts.published);
+    status.add(topic + ": messages waiting", counts.waiting);
+    status.add(topic + ": messages dropped", counts.dropped);
+  }
+  status.add("Messages dropped", dropped);
 }
 
 }  // namespace vibro_impact::graph

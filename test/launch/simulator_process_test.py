@@ -179,8 +179,8 @@ class SimulatorProcessTest(NodeProcessTest):
 
         def counts():
             """Blocks that the node has accepted, and impacts that it has published."""
-            values = [{value.key: value.value for value in status.values}
-                      for message in diagnostics[-1:] for status in message.status]
+            values = [{value.key: value.value for status in message.status for value in status.values}
+                      for message in diagnostics[-1:]]
             return [(int(value["Blocks accepted"]), int(value["Impacts"])) for value in values if "Impacts" in value]
 
         def answer(streams):

@@ -20,9 +20,11 @@
 #include <ros/ros.h>
 #include <rosbag/bag.h>
 #include <std_msgs/Float64.h>
+#include <std_srvs/SetBool.h>
 #include <std_srvs/Trigger.h>
 #include <unistd.h>
 #include <vibro_impact/SetContact.h>
+#include <vibro_impact/StreamStart.h>
 
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/core/switched_model.h"
@@ -66,6 +68,8 @@ public:
         "/diagnostics", 0, [this](const diagnostic_msgs::DiagnosticArrayConstPtr& message) { take(*message); }));
     subscribe<vibro_impact::ModelInfo>("model_info", infos);
     reset_ = node_.serviceClient<std_srvs::Trigger>("simulator/reset");
+    subscribe<vibro_impact::StreamStart>("stream_start", starts);
+    pause_ = node_.serviceClient<std_srvs::SetBool>("simulator/pause");
     set_contact_ = node_.serviceClient<vibro_impact::SetContact>("simulator/set_contact");
   }
 
@@ -113,6 +117,15 @@ public:
     return trigger.response;
   }
 
+  std_srvs::SetBool::Response pause(bool paused)
+  {
+    std_srvs::SetBool call;
+    call.request.data = paused;
+    EXPECT_TRUE(pause_.call(call));
+    EXPECT_TRUE(call.response.success);
+    return call.response;
+  }
+
   void setContact(const core::ContactParameters& contact, std::uint64_t seq)
   {
     vibro_impact::SetContact call;
@@ -136,6 +149,7 @@ public:
     impacts.clear();
     wrenches.clear();
     gaps_now.clear();
+    starts.clear();
   }
 
   /// A value of the latest diagnostics.
@@ -151,7 +165,8 @@ public:
   std::vector<geometry_msgs::WrenchStamped> wrenches;
   std::vector<std_msgs::Float64> gaps_now;
   std::vector<vibro_impact::ModelInfo> infos;
-  int level = -1;
+  std::vector<vibro_impact::StreamStart> starts;
+  int level = -1;  ///< of the status of the input
   std::string summary;
   std::map<std::string, std::string> values;
   /// Summaries of all diagnostics that were not OK.
@@ -169,18 +184,22 @@ private:
   {
     for (const auto& status : message.status)
     {
-      if (status.name == "simulator: Simulation" && !status.values.empty())
+      if (status.name.rfind("simulator: ", 0) != 0 || status.values.empty())
+      {
+        continue;
+      }
+      for (const auto& entry : status.values)
+      {
+        values[entry.key] = entry.value;
+      }
+      if (status.name == "simulator: Input")
       {
         level = status.level;
         summary = status.message;
-        for (const auto& entry : status.values)
-        {
-          values[entry.key] = entry.value;
-        }
-        if (level != diagnostic_msgs::DiagnosticStatus::OK)
-        {
-          complaints.push_back(summary);
-        }
+      }
+      if (status.level != diagnostic_msgs::DiagnosticStatus::OK)
+      {
+        complaints.push_back(status.message);
       }
     }
   }
@@ -190,6 +209,7 @@ private:
   std::vector<ros::Subscriber> subscribers_;
   ros::ServiceClient reset_;
   graph::NodeQuery query_;
+  ros::ServiceClient pause_;
   ros::ServiceClient set_contact_;
   std::int64_t resets_ = 0;
 };
@@ -522,6 +542,39 @@ TEST_F(SimulatorTest, diagnosticsCountWhatIsDoneAndSilenceIsStale)
                client_->summary.find("no data on topic /base_excitation") != std::string::npos;
       }))
       << client_->summary;
+}
+
+TEST_F(SimulatorTest, aPauseCutsTheOpenImpactShortAndDiscardsBlocks)
+{
+  ASSERT_TRUE(client_->upToDate());
+  const std::int64_t discarded = std::max<std::int64_t>(client_->count("Samples discarded"), 0);
+  const std::uint64_t open = openAfter(20000);
+  sendStream(0, open);
+  expectAnswers();
+  EXPECT_EQ(client_->pause(true).message, "paused; an open impact was cut short");
+  EXPECT_EQ(client_->pause(true).message, "paused already");
+  expect(reference_->reset());
+  expectAnswers();
+  EXPECT_TRUE(client_->impacts.back().cut_short);
+
+  for (std::uint64_t seq = open; seq < open + 10 * block_size; seq += block_size)
+  {
+    client_->send(block(seq));
+  }
+  ASSERT_TRUE(client_->spinUntil(
+      [&] { return client_->count("Samples discarded") == discarded + static_cast<std::int64_t>(10 * block_size); }));
+  EXPECT_NE(client_->summary.find("paused: blocks are discarded"), std::string::npos) << client_->summary;
+  EXPECT_EQ(client_->pause(false).message, "goes on from rest with the next block");
+  EXPECT_EQ(client_->pause(false).message, "not paused");
+  const std::uint64_t next = open + 10 * block_size;
+  sendStream(next, next + 5000);
+  expectAnswers();
+  ASSERT_TRUE(client_->spinUntil([] { return client_->starts.size() == 2; }));
+  EXPECT_EQ(client_->starts.front().seq, 0u);
+  EXPECT_EQ(client_->starts.front().reason, "reset");
+  EXPECT_EQ(client_->starts.back().seq, next);
+  EXPECT_EQ(client_->starts.back().sample_period, period);
+  EXPECT_EQ(client_->starts.back().reason, "paused until then");
 }
 
 /// What a bag holds, computed again in this process.

@@ -113,7 +113,7 @@ TEST(SimulatorParameters, ownParametersHaveDefaults)
   EXPECT_EQ(parameters.limits.max_stamp_jitter, 0.05);
   EXPECT_EQ(parameters.mirror_rate, 50.0);
   EXPECT_EQ(parameters.queue_size, 1000u);
-  EXPECT_EQ(parameters.max_input_age, 1.0);
+  EXPECT_EQ(parameters.thresholds.max_input_age, 1.0);
   EXPECT_EQ(parameters.diagnostic_period, 1.0);
 }
 
@@ -128,6 +128,12 @@ TEST(SimulatorParameters, ownParametersAreRead)
   tree["queue_size"] = "0";
   tree["max_input_age"] = 2.5;
   tree["diagnostic_period"] = 0.1;
+  tree["warn_lost_samples"] = 250;
+  tree["warn_real_time_factor"] = 4;
+  tree["error_real_time_factor"] = 2;
+  tree["warn_block_load"] = 0.25;
+  tree["warn_queue_share"] = 0.75;
+  tree["warn_energy_closure"] = "1e-9";
   const SimulatorParameters parameters = parseSimulatorParameters(tree, "/simulator");
   EXPECT_EQ(parameters.limits.max_acceleration, 500.0);
   EXPECT_EQ(parameters.limits.max_bridged_gap, 0.0);
@@ -135,8 +141,14 @@ TEST(SimulatorParameters, ownParametersAreRead)
   EXPECT_EQ(parameters.limits.max_stamp_jitter, 0.01);
   EXPECT_EQ(parameters.mirror_rate, 25.0);
   EXPECT_EQ(parameters.queue_size, 0u);
-  EXPECT_EQ(parameters.max_input_age, 2.5);
+  EXPECT_EQ(parameters.thresholds.max_input_age, 2.5);
   EXPECT_EQ(parameters.diagnostic_period, 0.1);
+  EXPECT_EQ(parameters.thresholds.warn_lost_samples, 250.0);
+  EXPECT_EQ(parameters.thresholds.warn_real_time_factor, 4.0);
+  EXPECT_EQ(parameters.thresholds.error_real_time_factor, 2.0);
+  EXPECT_EQ(parameters.thresholds.warn_block_load, 0.25);
+  EXPECT_EQ(parameters.thresholds.warn_queue_share, 0.75);
+  EXPECT_EQ(parameters.thresholds.warn_energy_closure, 1.0e-9);
 }
 
 TEST(SimulatorParameters, emptyTreeNamesWhatIsMissing)
@@ -166,8 +178,10 @@ TEST(SimulatorParameters, allFaultsComeInOneMessage)
 
 TEST(SimulatorParameters, everyOwnParameterIsChecked)
 {
-  for (const char* key : {"max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter", "mirror_rate",
-                          "queue_size", "max_input_age", "diagnostic_period"})
+  for (const char* key :
+       {"max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter", "mirror_rate", "queue_size",
+        "max_input_age", "diagnostic_period", "warn_lost_samples", "warn_real_time_factor", "error_real_time_factor",
+        "warn_block_load", "warn_queue_share", "warn_energy_closure"})
   {
     const std::vector<std::pair<XmlRpcValue, std::string>> bad = {
         {-1, "-1"}, {1.0e12, "1000000000000"}, {"nan", "\"nan\""}, {true, "true"}, {std::string(), "\"\""}};

@@ -6,6 +6,7 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include "vibro_impact/core/parameters.h"
+#include "vibro_impact/ros/simulator_statistics.h"
 #include "vibro_impact/ros/stream_rules.h"
 
 namespace vibro_impact::graph
@@ -17,7 +18,7 @@ struct SimulatorParameters
   StreamLimits limits;              ///< max_acceleration, max_bridged_gap, max_step_back, max_stamp_jitter
   double mirror_rate = 50.0;        ///< messages of each slow mirror per second of the stream's time, Hz
   std::uint32_t queue_size = 1000;  ///< blocks in the queue of each subscriber and publisher; 0: no limit
-  double max_input_age = 1.0;       ///< silence after which the input counts as stale, s of wall time
+  DiagnosticThresholds thresholds;  ///< max_input_age, warn_..., error_...
   double diagnostic_period = 1.0;   ///< s of wall time
 };
 
