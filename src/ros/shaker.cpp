@@ -6,7 +6,7 @@
 #include <utility>
 #include <variant>
 
-#include <ros/callback_queue.h>
+#include <boost/make_shared.hpp>
 
 #include "vibro_impact/core/quotient.h"
 #include "vibro_impact/ros/conversions.h"
@@ -33,12 +33,6 @@ constexpr double longest_recorder_wait = 5.0;
 double since(std::chrono::steady_clock::time_point start)
 {
   return Seconds(std::chrono::steady_clock::now() - start).count();
-}
-
-// Serves callbacks; returns early where there are some, or to look for the end.
-void wait(double seconds)
-{
-  ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(std::min(seconds, longest_wait)));
 }
 
 void append(std::string& list, const std::string& item)
@@ -68,6 +62,7 @@ Shaker::Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const 
       reference_frequency_(
           std::visit([](const auto& parameters) { return parameters.reference_frequency; }, parameters_.signal))
 {
+  node.setCallbackQueue(&queue_);
   if (!parameters_.recorder.empty())
   {
     std::vector<std::string> topics;
@@ -113,7 +108,12 @@ bool Shaker::goesOn() const
   return !stop_ && ros::ok();
 }
 
-void Shaker::pause(double seconds) const
+void Shaker::wait(double seconds)
+{
+  queue_.callAvailable(ros::WallDuration(std::min(seconds, longest_wait)));
+}
+
+void Shaker::pause(double seconds)
 {
   const Clock::time_point start = Clock::now();
   for (double left = seconds; goesOn() && left > 0.0; left = seconds - since(start))
@@ -265,8 +265,10 @@ void Shaker::publishBlock(std::uint64_t count, Stamp start)
   block_.seq = published_;
   block_.values.resize(count);
   signal_->generate(published_, count, block_.values.data());
-  toMessage(block_, message_);
-  publisher_.publish(message_);
+  // A new one each time: subscribers in this process keep the one that they were given.
+  const auto message = boost::make_shared<BaseExcitation>();
+  toMessage(block_, *message);
+  publisher_.publish(message);
   published_ += count;
   ++blocks_;
 }

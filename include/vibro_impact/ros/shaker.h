@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <vibro_impact/BaseExcitation.h>
 #include <vibro_impact/Gap.h>
@@ -41,8 +42,10 @@ private:
   using Clock = std::chrono::steady_clock;
 
   bool goesOn() const;
+  /// Serves callbacks; returns early where there are some, or to look for the end.
+  void wait(double seconds);
   /// Serves callbacks for `seconds` or until `stop`.
-  void pause(double seconds) const;
+  void pause(double seconds);
   /// What must still happen before the first block can go out; empty: nothing.
   std::string missing();
   /// Whom the stream must still reach; empty: nobody.
@@ -63,6 +66,7 @@ private:
   std::uint64_t unanswered() const;
 
   const std::atomic<bool>& stop_;
+  ros::CallbackQueue queue_;  // its own, so that run() serves them on whatever thread it is called
   ShakerParameters parameters_;
   std::unique_ptr<const core::DriveSignal> signal_;
   double reference_frequency_;
@@ -70,7 +74,6 @@ private:
   ros::Subscriber subscriber_;
   NodeQuery query_;
   Samples block_;
-  BaseExcitation message_;
   std::uint64_t published_ = 0;  // samples
   std::uint64_t blocks_ = 0;
   std::uint64_t answered_ = 0;  // samples
