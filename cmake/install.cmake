@@ -8,4 +8,5 @@ install(DIRECTORY config launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
 catkin_install_python(
   PROGRAMS scripts/landmarks scripts/limiting_case scripts/plot_frf scripts/plot_simulation scripts/replay_contact
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(PROGRAMS scripts/isolated DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES scripts/frequency_response.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
