@@ -134,6 +134,26 @@ std::map<std::string, std::vector<std::size_t>> findPublishers(const std::vector
   return publishers;
 }
 
+std::string findPublishedType(const std::string& topic)
+{
+  XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  request[1] = "";
+  XmlRpcValue response;
+  XmlRpcValue topics;
+  if (ros::master::execute("getPublishedTopics", request, response, topics, false))
+  {
+    for (XmlRpcValue& published : elements(topics))  // [[topic, type], ...]
+    {
+      if (static_cast<std::string&>(published[0]) == topic)
+      {
+        return static_cast<std::string&>(published[1]);
+      }
+    }
+  }
+  return {};
+}
+
 std::vector<int> connectionsTo(const std::string& subscriber, const std::string& topic, const XmlRpcValue& bus_info)
 {
   std::vector<int> connections;

@@ -59,6 +59,12 @@ bool ParameterReader::has(const std::string& key) const
   return map_.hasMember(key);
 }
 
+bool ParameterReader::isWord(const std::string& key, const std::string& word) const
+{
+  return has(key) && map_[key].getType() == XmlRpcValue::TypeString &&
+         static_cast<const std::string&>(map_[key]) == word;
+}
+
 double ParameterReader::number(const std::string& key, double missing)
 {
   const XmlRpcValue* value = find(key);

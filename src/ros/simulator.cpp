@@ -14,9 +14,6 @@ namespace vibro_impact::graph
 {
 namespace
 {
-/// Seconds between two words about a topic on which nothing comes.
-constexpr double waiting_period = 5.0;
-
 /// roscpp sends in the background and drops at its end what it has not sent yet, s.
 constexpr double linger = 0.3;
 
@@ -36,14 +33,18 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
     : parameters_(readParameters(private_node)),
       simulation_(std::make_shared<const core::SwitchedModel>(parameters_.system), parameters_.limits),
       extremes_(parameters_.mirror_rate),
-      guard_(parameters_.thresholds.max_input_age),
       input_statistics_(node.resolveName("base_excitation"), parameters_.thresholds),
       computing_statistics_(parameters_.thresholds),
-      queue_statistics_({&gap_, &force_, &impact_, &stream_start_}, parameters_.thresholds),
+      queue_statistics_(queues(), parameters_.thresholds),
       model_statistics_(parameters_.thresholds),
-      diagnostics_(node, private_node, private_node.getNamespace())
+      diagnostics_(node, private_node, private_node.getNamespace()),
+      input_(parameters_, *this)
 {
   const std::uint32_t queue_size = parameters_.queue_size;
+  if (parameters_.input.kind != InputKind::block)
+  {
+    excitation_used_.advertise<BaseExcitation>(node, "excitation_used", queue_size);
+  }
   gap_.advertise<Gap>(node, "gap", queue_size);
   force_.advertise<ContactForce>(node, "contact_force", queue_size);
   impact_.advertise<Impact>(node, "impact", impact_queue);
@@ -55,18 +56,16 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   addDiagnostics();
   diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
                                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
-  waiting_timer_ = node.createWallTimer(ros::WallDuration(waiting_period), &Simulator::onWaiting, this);
 
   reset_server_ = private_node.advertiseService("reset", &Simulator::onReset, this);
   pause_server_ = private_node.advertiseService("pause", &Simulator::onPause, this);
   set_contact_server_ = private_node.advertiseService("set_contact", &Simulator::onSetContact, this);
-  excitation_subscriber_ =
-      node.subscribe("base_excitation", queue_size, &Simulator::onExcitation, this, ros::TransportHints().tcpNoDelay());
+  input_.subscribe(node);
   // The last of all: who has heard it finds the services and is heard.
   publishModelInfo(simulation_.model(), 0, ros::Time());
   // Also because roscpp's first line of the log registers the node anew: were it the last one, said to a newer node of
   // the same name that takes over, the master would have that one end as well.
-  ROS_INFO("simulating what comes on topic %s", excitation_subscriber_.getTopic().c_str());
+  ROS_INFO("simulating what comes on topic %s", input_.topic().c_str());
 }
 
 void Simulator::addDiagnostics()
@@ -74,21 +73,31 @@ void Simulator::addDiagnostics()
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
   // The updater's own timing follows ros::Time, which stands still while a bag that gives the time is paused.
   diagnostics_.setHardwareID("none");
-  diagnostics_.add("Input", [this](Status& status) { input_statistics_.report(inputAge(), paused_, status); });
+  diagnostics_.add("Input",
+                   [this](Status& status)
+                   {
+                     input_statistics_.report(input_.age(), paused_, status);
+                     input_.report(status);
+                   });
   diagnostics_.add("Real-time factor", [this](Status& status) { computing_statistics_.report(status); });
   diagnostics_.add("Output queues", [this](Status& status) { queue_statistics_.report(status); });
   diagnostics_.add("Model", [this](Status& status) { model_statistics_.report(simulation_.energyAccount(), status); });
 }
 
-std::optional<double> Simulator::inputAge() const
+std::vector<const OutputQueue*> Simulator::queues() const
 {
-  return last_input_ ? std::optional<double>((ros::SteadyTime::now() - *last_input_).toSec()) : std::nullopt;
+  std::vector<const OutputQueue*> queues = {&gap_, &force_, &impact_, &stream_start_};
+  if (parameters_.input.kind != InputKind::block)
+  {
+    queues.push_back(&excitation_used_);
+  }
+  return queues;
 }
 
 void Simulator::finish()
 {
   // A callback that is running on another thread (a nodelet's) ends first.
-  excitation_subscriber_.shutdown();
+  input_.shutdown();
   for (ros::ServiceServer* server : {&reset_server_, &pause_server_, &set_contact_server_})
   {
     server->shutdown();
@@ -97,49 +106,46 @@ void Simulator::finish()
   ros::WallDuration(linger).sleep();
 }
 
-void Simulator::onExcitation(const ros::MessageEvent<const BaseExcitation>& event)
+void Simulator::onExcitation(const Samples& excitation)
 {
   const ros::SteadyTime start = ros::SteadyTime::now();
-  waiting_timer_.stop();
-  last_input_ = start;
-  const std::string& publisher = event.getPublisherName();
-  const BaseExcitation& message = *event.getConstMessage();
-  const std::size_t samples = message.acceleration.size();
-  try
+  const std::size_t samples = excitation.values.size();
+  if (paused_)
   {
-    if (!guard_.admit(publisher, excitation_subscriber_.getNumPublishers(), start.toSec()))
-    {
-      input_statistics_.countSecondPublisher(guard_.source(), publisher, samples);
-      ROS_ERROR_COND(publishers_.due(), "two publishers on topic %s: %s and %s; blocks of the second are refused",
-                     excitation_subscriber_.getTopic().c_str(), guard_.source().c_str(), publisher.c_str());
-      return;
-    }
-    if (paused_)
-    {
-      input_statistics_.countDiscarded(samples);
-      return;
-    }
-    fromMessage(message, excitation_);
-    const StreamSimulation::Answer& answer = simulation_.advance(excitation_);
-    input_statistics_.count(answer.verdict, samples);
-    log(answer.verdict);
-    if (answer.verdict.action == Verdict::Action::Refuse)
-    {
-      return;
-    }
-    model_statistics_.count(answer);
-    publish(answer);
-    // A node that computes hears nothing; that is no silence of the publisher's.
-    last_input_ = ros::SteadyTime::now();
-    guard_.listenAgain(last_input_->toSec());
-    const std::uint64_t bridged = answer.verdict.action == Verdict::Action::Bridge ? answer.verdict.missing : 0;
-    computing_statistics_.count(static_cast<double>(bridged + samples) * excitation_.sample_period,
-                                (*last_input_ - start).toSec());
+    input_statistics_.countDiscarded(samples);
+    return;
   }
-  catch (const std::exception& error)
+  const StreamSimulation::Answer& answer = simulation_.advance(excitation);
+  input_statistics_.count(answer.verdict, samples);
+  log(answer.verdict);
+  if (answer.verdict.action == Verdict::Action::Refuse)
   {
-    ROS_ERROR_COND(losses_.due(), "a block of %s was lost: %s", publisher.c_str(), error.what());
+    return;
   }
+  model_statistics_.count(answer);
+  if (parameters_.input.kind != InputKind::block)
+  {
+    const auto used = boost::make_shared<BaseExcitation>();
+    toMessage(excitation, *used);
+    excitation_used_.publish<BaseExcitation>(used);
+  }
+  publish(answer);
+  const std::uint64_t bridged = answer.verdict.action == Verdict::Action::Bridge ? answer.verdict.missing : 0;
+  computing_statistics_.count(static_cast<double>(bridged + samples) * excitation.sample_period,
+                              (ros::SteadyTime::now() - start).toSec());
+}
+
+void Simulator::onRefusal(const std::string& reason, std::uint64_t samples)
+{
+  input_statistics_.countRefusal(reason, samples);
+  ROS_ERROR_COND(refusals_.due(), "sample refused: %s", reason.c_str());
+}
+
+void Simulator::onSecondPublisher(const std::string& source, const std::string& second, std::size_t samples)
+{
+  input_statistics_.countSecondPublisher(source, second, samples);
+  ROS_ERROR_COND(publishers_.due(), "two publishers on topic %s: %s and %s; blocks of the second are refused",
+                 input_.topic().c_str(), source.c_str(), second.c_str());
 }
 
 const StreamSimulation::Answer& Simulator::rest(const std::string& reason)
@@ -197,11 +203,6 @@ bool Simulator::onSetContact(SetContact::Request& request, SetContact::Response&
     ROS_ERROR_COND(contact_refusals_.due(), "contact not changed: %s", error.what());
   }
   return true;
-}
-
-void Simulator::onWaiting(const ros::WallTimerEvent& /*event*/)
-{
-  ROS_WARN("still waiting for data on topic %s ...", excitation_subscriber_.getTopic().c_str());
 }
 
 void Simulator::publish(const StreamSimulation::Answer& answer)

@@ -73,6 +73,7 @@ SimulatorParameters parseSimulatorParameters(const XmlRpcValue& tree, const std:
   ParameterReader reader(tree, "");
   const XmlRpcValue model = reader.take({"beam1", "beam2", "contact", "damping", "basis"});
   const std::string directory = reader.text("configuration_directory", "");
+  parameters.input = readInput(reader);
   limits.max_acceleration =
       reader.positive("max_acceleration", limits.max_acceleration, highest_acceleration, " (m/s^2)");
   limits.max_bridged_gap = reader.nonNegative("max_bridged_gap", limits.max_bridged_gap, longest_time, " (s)");

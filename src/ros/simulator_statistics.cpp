@@ -38,6 +38,13 @@ void InputStatistics::count(const Verdict& verdict, std::size_t samples)
   }
 }
 
+void InputStatistics::countRefusal(const std::string& reason, std::uint64_t samples)
+{
+  totals_.blocks_refused += samples;
+  totals_.samples_refused += samples;
+  last_refusal_ = reason;
+}
+
 void InputStatistics::countSecondPublisher(const std::string& source, const std::string& second, std::size_t samples)
 {
   ++totals_.blocks_refused;

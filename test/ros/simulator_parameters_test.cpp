@@ -11,6 +11,7 @@
 
 namespace core = vibro_impact::core;
 using vibro_impact::config::Error;
+using vibro_impact::graph::InputKind;
 using vibro_impact::graph::parseSimulatorParameters;
 using vibro_impact::graph::SimulatorParameters;
 using vibro_impact::graph::toYaml;
@@ -198,6 +199,101 @@ TEST(SimulatorParameters, everyOwnParameterIsChecked)
     tree["queue_size"] = value;
     expectFaults(tree, {"queue_size = 2.5: must be a whole number from 0 to 1000000"});
   }
+}
+
+XmlRpcValue treeOf(const std::string& input)
+{
+  XmlRpcValue tree = goodTree();
+  tree["input"] = input;
+  return tree;
+}
+
+TEST(SimulatorParameters, inputHasDefaults)
+{
+  EXPECT_EQ(parseSimulatorParameters(goodTree(), "/simulator").input.kind, InputKind::block);
+  for (const InputKind kind : {InputKind::accel, InputKind::imu})
+  {
+    const auto input = parseSimulatorParameters(treeOf(nameOf(kind)), "/simulator").input;
+    EXPECT_EQ(input.kind, kind);
+    EXPECT_EQ(input.axis.component, 2u);
+    EXPECT_EQ(input.axis.sign, 1.0);
+    EXPECT_EQ(input.frame_id, "");
+    EXPECT_FALSE(input.grid.sample_period) << "measured";
+    EXPECT_EQ(input.grid.offset.has_value(), kind == InputKind::accel) << "the mean of specific forces is gravity";
+    EXPECT_EQ(input.grid.offset.value_or(0.0), 0.0);
+    EXPECT_EQ(input.grid.offset_duration, 2.0);
+  }
+}
+
+TEST(SimulatorParameters, inputIsRead)
+{
+  XmlRpcValue tree = treeOf("imu");
+  tree["frame_id"] = "imu_link";
+  tree["sample_period"] = "4e-3";
+  tree["offset"] = -9.81;
+  const auto input = parseSimulatorParameters(tree, "/simulator").input;
+  EXPECT_EQ(input.frame_id, "imu_link");
+  EXPECT_EQ(input.grid.sample_period, 4.0e-3);
+  EXPECT_EQ(input.grid.offset, -9.81);
+
+  tree["offset"] = "mean";
+  tree["offset_duration"] = 5;
+  const auto measured = parseSimulatorParameters(tree, "/simulator").input;
+  EXPECT_FALSE(measured.grid.offset);
+  EXPECT_EQ(measured.grid.offset_duration, 5.0);
+
+  const std::pair<const char*, std::pair<std::size_t, double>> axes[] = {
+      {"x", {0, 1.0}}, {"-x", {0, -1.0}}, {"y", {1, 1.0}}, {"-y", {1, -1.0}}, {"z", {2, 1.0}}, {"-z", {2, -1.0}}};
+  for (const auto& [name, meant] : axes)
+  {
+    tree["axis"] = name;
+    const auto axis = parseSimulatorParameters(tree, "/simulator").input.axis;
+    EXPECT_EQ(axis.component, meant.first) << name;
+    EXPECT_EQ(axis.sign, meant.second) << name;
+  }
+}
+
+TEST(SimulatorParameters, faultsOfTheInputComeInOneMessage)
+{
+  XmlRpcValue tree = treeOf("accel");
+  tree["axis"] = "up";
+  tree["frame_id"] = 3;
+  tree["sample_period"] = 0;
+  tree["offset"] = "medium";
+  tree["offset_duration"] = -1;
+  expectFaults(tree,
+               {"/simulator: 5 faults", "axis = \"up\": must be x, -x, y, -y, z or -z", "frame_id = 3: must be a text",
+                "sample_period = 0: must be a number from 1e-09 to 1000 (s)",
+                "offset = \"medium\": must be the word mean, or a number of at most 1000000000 in magnitude (m/s^2)",
+                "offset_duration = -1: must be a number > 0 and <= 60 (s)"});
+  for (const char* offset : {"nan", "1e10"})
+  {
+    tree["offset"] = offset;
+    expectFaults(tree, {"offset = "});
+  }
+  expectFaults(treeOf("IMU"), {"/simulator: input = \"IMU\": must be block, accel or imu"});
+}
+
+TEST(SimulatorParameters, whatHasNoMeaningForTheInputIsAFault)
+{
+  XmlRpcValue tree = treeOf("block");
+  tree["axis"] = "z";
+  tree["frame_id"] = "imu_link";
+  tree["sample_period"] = 0.001;
+  tree["offset"] = 0;
+  tree["offset_duration"] = 1;
+  expectFaults(tree, {"/simulator: 5 faults", "axis = \"z\": must be left out where input is block",
+                      "frame_id = \"imu_link\": must be left out where input is block",
+                      "sample_period = 0.001: must be left out where input is block",
+                      "offset = 0: must be left out where input is block",
+                      "offset_duration = 1: must be left out where input is block"});
+
+  tree = treeOf("imu");
+  tree["max_stamp_jitter"] = 0.1;
+  tree["offset"] = 9.81;
+  tree["offset_duration"] = 1;
+  expectFaults(tree, {"/simulator: 2 faults", "max_stamp_jitter = 0.1: must be left out where input is imu",
+                      "offset_duration = 1: must be left out where offset is a number"});
 }
 
 TEST(SimulatorParameters, numbersOfTheModelKeepTheirType)

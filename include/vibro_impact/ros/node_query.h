@@ -40,6 +40,10 @@ std::vector<XmlRpc::XmlRpcValue> elements(const XmlRpc::XmlRpcValue& array);
 /// The nodes that publish `topics` (resolved names), as the master knows them, and of each the indices of its topics.
 std::map<std::string, std::vector<std::size_t>> findPublishers(const std::vector<std::string>& topics);
 
+/// The type of the messages on `topic` (a resolved name), as its publishers have told the master; empty if there are
+/// none or the master does not answer.
+std::string findPublishedType(const std::string& topic);
+
 /// The numbers of the connections by which a publisher, as its `bus_info` tells, sends `topic` to `subscriber`.
 std::vector<int> connectionsTo(const std::string& subscriber, const std::string& topic,
                                const XmlRpc::XmlRpcValue& bus_info);

@@ -19,6 +19,9 @@ public:
 
   bool has(const std::string& key) const;
 
+  /// Whether `key` is this text.
+  bool isWord(const std::string& key, const std::string& word) const;
+
   // Numbers whose range the caller checks. One of another type becomes one that is out of every range, so that this
   // check rejects it.
 

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
@@ -15,20 +16,21 @@
 #include <vibro_impact/SetContact.h>
 #include <vibro_impact/StreamStart.h>
 
+#include "vibro_impact/ros/excitation_input.h"
 #include "vibro_impact/ros/extremes.h"
 #include "vibro_impact/ros/log_throttle.h"
 #include "vibro_impact/ros/output_queue.h"
 #include "vibro_impact/ros/simulator_parameters.h"
 #include "vibro_impact/ros/simulator_statistics.h"
-#include "vibro_impact/ros/source_guard.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
 namespace vibro_impact::graph
 {
-/// The simulator on the graph: base_excitation in, gap, contact_force and impact out.
+/// The simulator on the graph: base_excitation in, gap, contact_force and impact out; excitation_used, too, where what
+/// comes in is single samples.
 ///
 /// All callbacks must come from one thread at a time (the global queue of a node, or a nodelet's single-threaded one).
-class Simulator
+class Simulator : private ExcitationSink
 {
 public:
   /// Reads the private parameters, advertises, subscribes, in that order. Throws config::Error with all faults of the
@@ -40,14 +42,15 @@ public:
   void finish();
 
 private:
-  void onExcitation(const ros::MessageEvent<const BaseExcitation>& event);
+  void onExcitation(const Samples& excitation) override;
+  void onRefusal(const std::string& reason, std::uint64_t samples) override;
+  void onSecondPublisher(const std::string& source, const std::string& second, std::size_t samples) override;
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onSetContact(SetContact::Request& request, SetContact::Response& response);
-  void onWaiting(const ros::WallTimerEvent& event);
 
   void addDiagnostics();
-  std::optional<double> inputAge() const;
+  std::vector<const OutputQueue*> queues() const;
   /// The motion ends; `reason`: why the next one begins.
   const StreamSimulation::Answer& rest(const std::string& reason);
   void publish(const StreamSimulation::Answer& answer);
@@ -60,19 +63,15 @@ private:
   StreamSimulation simulation_;
   std::uint64_t contact_changes_ = 0;
   ExtremesHold extremes_;
-  SourceGuard guard_;
   bool paused_ = false;
   std::string start_reason_ = "first block";
-  std::optional<ros::SteadyTime> last_input_;
   LogThrottle refusals_;
   LogThrottle bridges_;
   LogThrottle restarts_;
   LogThrottle publishers_;
-  LogThrottle losses_;
   LogThrottle contact_refusals_;
 
-  Samples excitation_;  ///< keeps its memory from block to block
-
+  OutputQueue excitation_used_;  ///< of single samples only
   OutputQueue gap_;
   OutputQueue force_;
   OutputQueue impact_;
@@ -86,11 +85,10 @@ private:
   ModelStatistics model_statistics_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostic_timer_;
-  ros::WallTimer waiting_timer_;
   ros::ServiceServer reset_server_;
   ros::ServiceServer pause_server_;
   ros::ServiceServer set_contact_server_;
-  ros::Subscriber excitation_subscriber_;
+  ExcitationInput input_;
 };
 
 }  // namespace vibro_impact::graph

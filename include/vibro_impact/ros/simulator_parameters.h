@@ -6,6 +6,7 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include "vibro_impact/core/parameters.h"
+#include "vibro_impact/ros/input_parameters.h"
 #include "vibro_impact/ros/simulator_statistics.h"
 #include "vibro_impact/ros/stream_rules.h"
 
@@ -15,9 +16,10 @@ namespace vibro_impact::graph
 struct SimulatorParameters
 {
   core::SystemParameters system;    ///< beam1, beam2, contact, damping, basis
+  InputParameters input;            ///< input, axis, frame_id, sample_period, offset, offset_duration
   StreamLimits limits;              ///< max_acceleration, max_bridged_gap, max_step_back, max_stamp_jitter
   double mirror_rate = 50.0;        ///< messages of each slow mirror per second of the stream's time, Hz
-  std::uint32_t queue_size = 1000;  ///< blocks in the queue of each subscriber and publisher; 0: no limit
+  std::uint32_t queue_size = 1000;  ///< messages in the queue of each subscriber and publisher; 0: no limit
   DiagnosticThresholds thresholds;  ///< max_input_age, warn_..., error_...
   double diagnostic_period = 1.0;   ///< s of wall time
 };

@@ -40,6 +40,9 @@ public:
   /// A block of `samples` samples was judged.
   void count(const Verdict& verdict, std::size_t samples);
 
+  /// So many single samples were refused before they could be put into a block.
+  void countRefusal(const std::string& reason, std::uint64_t samples);
+
   /// A block of a second publisher was refused.
   void countSecondPublisher(const std::string& source, const std::string& second, std::size_t samples);
 
