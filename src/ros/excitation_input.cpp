@@ -232,7 +232,7 @@ void ExcitationInput::report(diagnostic_updater::DiagnosticStatusWrapper& status
   using diagnostic_msgs::DiagnosticStatus;
   if (!type_fault_.empty())
   {
-    status.mergeSummary(DiagnosticStatus::ERROR, type_fault_);
+    status.summary(DiagnosticStatus::ERROR, type_fault_);  // says more than that nothing comes
   }
   status.add("Input", nameOf(parameters_.kind));
   status.add("Messages received", received_);

@@ -8,26 +8,18 @@ import subprocess
 import tempfile
 
 import rosbag
-import rospkg
 import rospy
 import rostest
 import yaml
-from diagnostic_msgs.msg import DiagnosticArray
 from roslib.packages import find_node
 
-from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
-from vibro_impact.msg import BaseExcitation, ContactForce, Gap, Impact, ModelInfo
-from vibro_impact.srv import SetContact
+from node_process import PATIENCE, NodeProcessTest, wait_until
+from simulator_rig import PACKAGE, SimulatorRig, configuration, fields
+from vibro_impact.msg import BaseExcitation, ModelInfo
 
-PACKAGE = rospkg.RosPack().get_path("vibro_impact")
 PERIOD = 2.0e-5
 BLOCK = 250
 STIFFNESS = 24309.426302924
-
-
-def configuration():
-    with open(os.path.join(PACKAGE, "config", "interference_fit.yaml")) as stream:
-        return dict(yaml.safe_load(stream), queue_size=0, diagnostic_period=0.1)
 
 
 def block(seq, start=1700000000):
@@ -42,61 +34,9 @@ def contact(info):
     return float(values["stiffness"]), float(values["clearance"])
 
 
-def fields(message):
-    """All that an impact says, without what roscpp writes into its header."""
-    return [str(message.header.stamp)] + [getattr(message, slot) for slot in message.__slots__ if slot != "header"]
-
-
 def table(path):
     with open(path) as stream:
         return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(stream)]
-
-
-class Rig:
-    """A simulator of its own, and all that it publishes."""
-
-    def __init__(self, test, name_space):
-        test.namespace = name_space
-        test.start(configuration())
-        self.test = test
-        self.name = name_space + "/simulator"
-        self.messages = {}
-        self.topics = []
-        for topic, kind in [("gap", Gap), ("contact_force", ContactForce), ("impact", Impact), ("model_info", ModelInfo)]:
-            self.subscribe(name_space + "/" + topic, topic, kind)
-        self.subscribe("/diagnostics", "diagnostics", DiagnosticArray)
-        self.publisher = rospy.Publisher(name_space + "/base_excitation", BaseExcitation, queue_size=1000)
-        test.interfaces.append(self.publisher)
-        rospy.wait_for_service(self.name + "/set_contact", PATIENCE)
-        self.set_contact = rospy.ServiceProxy(self.name + "/set_contact", SetContact)
-
-    def subscribe(self, topic, key, kind):
-        self.messages[key] = []
-        self.topics.append(topic)
-        self.test.interfaces.append(rospy.Subscriber(topic, kind, self.messages[key].append, queue_size=None))
-
-    def connect(self):
-        self.test.assertTrue(wait_until(
-            lambda: self.publisher.get_num_connections() == 1 and self.messages["model_info"]
-            and is_connected(self.name, self.topics)), self.test.printed())
-
-    def count(self, key):
-        """A number of this simulator's latest diagnostics; -1 before the first."""
-        for message in reversed(self.messages["diagnostics"]):
-            for status in message.status:
-                if status.name.startswith(self.name.lstrip("/") + ":") or status.name.startswith(self.name + ":"):
-                    for value in status.values:
-                        if value.key == key:
-                            return int(value.value)
-        return -1
-
-    def answered(self, blocks):
-        """Waits for all answers to so many blocks."""
-        self.test.assertTrue(wait_until(
-            lambda: self.count("Blocks accepted") == blocks and len(self.messages["gap"]) == blocks
-            and len(self.messages["contact_force"]) == blocks
-            and len(self.messages["impact"]) == self.count("Impacts")
-            and len(self.messages["model_info"]) == 1 + self.count("Contact changes")), self.test.printed())
 
 
 class ContactChangeTest(NodeProcessTest):
@@ -109,7 +49,7 @@ class ContactChangeTest(NodeProcessTest):
         self.assertEqual(len(answer.message.splitlines()), 1)
 
     def test_a_bag_gives_the_same_impacts_in_a_new_simulator(self):
-        rig = Rig(self, self.namespace)
+        rig = SimulatorRig(self, self.namespace, configuration("interference_fit.yaml"))
         rig.connect()
         # Named beforehand, in and out of order, two of them in one block; then one as it comes.
         for seq, stiffness, clearance in [
@@ -151,7 +91,7 @@ class ContactChangeTest(NodeProcessTest):
             for message in blocks:
                 bag.write("base_excitation", message, message.header.stamp)
 
-        again = Rig(self, self.namespace + "/again")
+        again = SimulatorRig(self, self.namespace + "/again", configuration("interference_fit.yaml"))
         again.connect()
         again.publisher.unregister()
         output = subprocess.check_output(
@@ -168,7 +108,7 @@ class ContactChangeTest(NodeProcessTest):
         self.assertEqual([gap.gap for gap in again.messages["gap"]], [gap.gap for gap in rig.messages["gap"]])
 
     def test_simulate_gives_what_the_node_published(self):
-        rig = Rig(self, self.namespace)
+        rig = SimulatorRig(self, self.namespace, configuration("interference_fit.yaml"))
         rig.connect()
         for seq, clearance in [(0, -9.0e-8), (3100, -6.0e-8), (3000, -7.0e-8), (15100, 2.0e-8)]:
             answer = rig.set_contact(STIFFNESS, clearance, seq)
@@ -219,7 +159,7 @@ class ContactChangeTest(NodeProcessTest):
                          [force for message in rig.messages["contact_force"] for force in message.force])
 
     def test_bad_values_change_nothing(self):
-        rig = Rig(self, self.namespace)
+        rig = SimulatorRig(self, self.namespace, configuration("interference_fit.yaml"))
         rig.connect()
         for seq in range(0, 1000, BLOCK):
             rig.publisher.publish(block(seq))
@@ -255,7 +195,7 @@ class ContactChangeTest(NodeProcessTest):
                     file.write("model_info", info, rospy.Time(1))
             return path
 
-        good = yaml.safe_dump(configuration())
+        good = yaml.safe_dump(configuration("interference_fit.yaml"))
         self.assertIn("nowhere.bag", replay(os.path.join(directory.name, "nowhere.bag")))
         self.assertIn("holds 0 topics of type vibro_impact/ModelInfo", replay(bag("none.bag")))
         self.assertIn("holds a model_info that cannot be read", replay(bag("bad.bag", ModelInfo(configuration="contact: 3"))))

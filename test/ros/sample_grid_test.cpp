@@ -290,7 +290,7 @@ TEST(SampleGrid, missingSamplesBetweenTimesOfTheGridLeaveAHoleToo)
 TEST(SampleGrid, wherePartOfAStreamIsMissingTheGridBeginsAnewAndTheRulesRestart)
 {
   const StreamLimits limits;
-  for (const Stamp gap : {30 * millisecond, second, 3600 * second, 20 * 365 * 86400 * second})
+  for (const Stamp gap : {30 * millisecond, second, 3600 * second, Stamp{20} * 365 * 86400 * second})
   {
     StreamRules rules(limits);
     Stream stream(declared(), limits);
