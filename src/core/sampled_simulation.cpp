@@ -44,6 +44,21 @@ SampledSimulation::SampledSimulation(std::shared_ptr<const SwitchedModel> model,
 }
 
 SampledSimulation::~SampledSimulation() = default;
+
+SampledSimulation::SampledSimulation(const SampledSimulation& other)
+    : implementation_(std::make_unique<Implementation>(*other.implementation_))
+{
+}
+
+SampledSimulation& SampledSimulation::operator=(const SampledSimulation& other)
+{
+  if (this != &other)
+  {
+    implementation_ = std::make_unique<Implementation>(*other.implementation_);
+  }
+  return *this;
+}
+
 SampledSimulation::SampledSimulation(SampledSimulation&&) noexcept = default;
 SampledSimulation& SampledSimulation::operator=(SampledSimulation&&) noexcept = default;
 

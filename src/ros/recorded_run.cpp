@@ -81,6 +81,11 @@ std::string list(const std::set<std::string>& names)
   return text;
 }
 
+std::string absolute(const std::string& topic)
+{
+  return topic.empty() || topic.front() != '/' ? "/" + topic : topic;
+}
+
 bool isInside(const std::string& topic, const std::string& name_space)
 {
   std::string prefix = name_space;
@@ -92,8 +97,7 @@ bool isInside(const std::string& topic, const std::string& name_space)
   {
     prefix.insert(0, 1, '/');
   }
-  const std::string absolute = topic.empty() || topic.front() != '/' ? "/" + topic : topic;
-  return absolute.compare(0, prefix.size() + 1, prefix + "/") == 0;
+  return absolute(topic).compare(0, prefix.size() + 1, prefix + "/") == 0;
 }
 
 template <typename Block>
@@ -155,6 +159,27 @@ struct RecordedRun::Implementation
     return *inside.begin();
   }
 
+  /// The topic of this name; a name is that of the bag with or without its leading slash.
+  template <typename Message>
+  std::string require(const std::string& topic) const
+  {
+    const std::string type = ros::message_traits::datatype<Message>();
+    std::set<std::string> all;
+    for (const rosbag::ConnectionInfo* connection : everything->getConnections())
+    {
+      if (connection->datatype == type)
+      {
+        if (absolute(connection->topic) == absolute(topic))
+        {
+          return connection->topic;
+        }
+        all.insert(connection->topic);
+      }
+    }
+    throw config::Error(names + ": holds no topic " + topic + " of type " + type +
+                        (all.empty() ? "" : " (but " + list(all) + ")"));
+  }
+
   void read(const std::vector<std::string>& wanted, const Progress& progress,
             const std::function<void(const rosbag::MessageInstance&)>& take) const
   {
@@ -190,7 +215,7 @@ struct RecordedRun::Implementation
 };
 
 RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::string& name_space,
-                         RecordedContents contents)
+                         RecordedContents contents, const std::string& excitation)
     : implementation_(std::make_unique<Implementation>())
 {
   Implementation& self = *implementation_;
@@ -216,7 +241,8 @@ RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::strin
   {
     throw config::Error(damaged(self.names, error.what()));
   }
-  self.topics.base_excitation = self.find<BaseExcitation>(name_space, true);
+  self.topics.base_excitation =
+      excitation.empty() ? self.find<BaseExcitation>(name_space, true) : self.require<BaseExcitation>(excitation);
   const bool whole = contents == RecordedContents::whole_run;
   if (whole)
   {
@@ -259,7 +285,7 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
                           else if (topic == topics.gap)
                           {
                             const auto block = messageOf<Gap>(instance);
-                            sink.onGap(headOf(*block, block->gap.size()));
+                            sink.onGap(headOf(*block, block->gap.size()), block->gap);
                           }
                           else if (topic == topics.contact_force)
                           {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "contact_replay.h"
 #include "text.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/ros/contact_history.h"
@@ -75,46 +76,6 @@ void note(const Verdict& verdict, RecordingSimulation& result)
   }
 }
 
-// Tells a simulation of the changes of the contact as their samples come: a stream that begins anew may count the same
-// numbers again.
-class ContactChanger
-{
-public:
-  explicit ContactChanger(const RecordedModel& recorded) : recorded_(recorded)
-  {
-  }
-
-  void beforeBlock(const Samples& block, const StreamLimits& limits, StreamSimulation& simulation)
-  {
-    const std::uint64_t end = block.seq + block.values.size();
-    const double duration = static_cast<double>(block.values.size()) * block.sample_period + limits.max_stamp_jitter;
-    for (; next_ < recorded_.changes.size(); ++next_)
-    {
-      const RecordedChange& change = recorded_.changes[next_];
-      const double later = 1.0e-9 * static_cast<double>(change.stamp - block.stamp);
-      if (change.seq >= end || !(later < duration))
-      {
-        return;
-      }
-      core::SystemParameters changed = recorded_.parameters;
-      changed.contact = change.contact;
-      // The first sample of a stream that begins anew has no number for the simulation before it comes.
-      const bool anew = change.seq == block.seq && change.seq < end_;
-      simulation.setContact(std::make_shared<const core::SwitchedModel>(changed), anew ? 0 : change.seq);
-    }
-  }
-
-  void afterBlock(const Samples& block)
-  {
-    end_ = block.seq + block.values.size();
-  }
-
-private:
-  const RecordedModel& recorded_;
-  std::size_t next_ = 0;
-  std::uint64_t end_ = 0;  // of the block taken last
-};
-
 }  // namespace
 
 RecordedModel recordedModel(const RecordedRun& recording)
@@ -157,14 +118,19 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
   StreamRecorder recorder(history);
   StreamSimulation simulation(std::make_shared<const core::SwitchedModel>(recorded.parameters), limits);
   simulation.observe(recorder);
-  ContactChanger contact(recorded);
+  ContactReplay contact(recorded);
   RecordingSimulation result;
   Samples samples;
   recording.readExcitation(
       [&](const BaseExcitation& block)
       {
         fromMessage(block, samples);
-        contact.beforeBlock(samples, limits, simulation);
+        for (const RecordedChange& change : contact.comeWith(samples, limits.max_stamp_jitter))
+        {
+          core::SystemParameters changed = recorded.parameters;
+          changed.contact = change.contact;
+          simulation.setContact(std::make_shared<const core::SwitchedModel>(changed), change.seq);
+        }
         const Verdict& verdict = simulation.advance(samples).verdict;
         note(verdict, result);
         if (verdict.action == Verdict::Action::Refuse)
@@ -178,7 +144,7 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
                                    ", and tells the contact only from sample ", known.seq,
                                    " on: give a configuration as CONFIG"));
         }
-        contact.afterBlock(samples);
+        contact.take(samples);
         result.samples += samples.values.size();
         result.sample_period = samples.sample_period;
       },

@@ -98,7 +98,7 @@ public:
     finder_->add(block.seq, block.acceleration.data(), block.acceleration.size());
   }
 
-  void onGap(const BlockHead& block) override
+  void onGap(const BlockHead& block, const std::vector<double>& /*gap*/) override
   {
     check_.takeGap(block);
   }

@@ -77,6 +77,13 @@ class RecordedSweep(unittest.TestCase):
                 self.assertEqual(row[name], getattr(impact, name), name)
             self.assertEqual(row["duration_s"], impact.duration)
 
+    def test_replay_is_identical_bit_for_bit(self):
+        with rosbag.Bag(self.bag) as bag:
+            counts = {info.msg_type: info.message_count for info in bag.get_type_and_topic_info().topics.values()}
+        report = tool("replay_check", self.bag)
+        self.assertIn("identical: %d blocks, " % counts["vibro_impact/Gap"], report)
+        self.assertIn(" samples, %d impacts\n1 start from rest, " % counts["vibro_impact/Impact"], report)
+
     def test_steps_are_those_of_the_shaker(self):
         self.assertEqual(len(self.extracted), POINTS)
         for i, row in enumerate(self.extracted):

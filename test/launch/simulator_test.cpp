@@ -586,7 +586,7 @@ struct Replay : graph::RecordingSink
     graph::fromMessage(block, samples);
     excitation.push_back(samples);
   }
-  void onGap(const graph::BlockHead& /*block*/) override
+  void onGap(const graph::BlockHead& /*block*/, const std::vector<double>& /*gap*/) override
   {
   }
   void onContactForce(const graph::BlockHead& /*block*/, const std::vector<double>& /*force*/) override

@@ -22,6 +22,9 @@ public:
   /// sample_period in s, finite and > 0; throws std::invalid_argument otherwise.
   SampledSimulation(std::shared_ptr<const SwitchedModel> model, double sample_period);
   ~SampledSimulation();
+  /// A copy moves on by itself, from where the original is.
+  SampledSimulation(const SampledSimulation& other);
+  SampledSimulation& operator=(const SampledSimulation& other);
   SampledSimulation(SampledSimulation&&) noexcept;
   SampledSimulation& operator=(SampledSimulation&&) noexcept;
 

@@ -33,7 +33,7 @@ class RecordingSink
 public:
   virtual ~RecordingSink() = default;
   virtual void onExcitation(const BaseExcitation& block) = 0;
-  virtual void onGap(const BlockHead& block) = 0;
+  virtual void onGap(const BlockHead& block, const std::vector<double>& gap) = 0;  ///< `gap`: its samples, m
   virtual void onContactForce(const BlockHead& block,
                               const std::vector<double>& force) = 0;  ///< `force`: its samples, N
   virtual void onImpact(const Impact& impact) = 0;
@@ -66,10 +66,11 @@ public:
   using Progress = std::function<void(double)>;
 
   /// Opens the bags and finds the topics; where several have one type, that in `name_space` (such as "/rig1") is taken.
-  /// Throws config::Error, with a line that names the bag and says what to do, if a bag is missing, no bag, cut off or
-  /// without an index, and if a topic is missing or ambiguous.
+  /// `excitation`, unless it is empty, names the topic of the excitation. Throws config::Error, with a line that names
+  /// the bag and says what to do, if a bag is missing, no bag, cut off or without an index, and if a topic is missing
+  /// or ambiguous.
   explicit RecordedRun(const std::vector<std::string>& paths, const std::string& name_space = "",
-                       RecordedContents contents = RecordedContents::whole_run);
+                       RecordedContents contents = RecordedContents::whole_run, const std::string& excitation = "");
   ~RecordedRun();
   RecordedRun(RecordedRun&&) noexcept;
   RecordedRun& operator=(RecordedRun&&) noexcept;

@@ -37,7 +37,7 @@ public:
 /// clock.
 ///
 /// The same samples give the same impacts (number, seq, offset and all that was computed) bit for bit, however they are
-/// cut into blocks; exactly stamped samples give the same stamps as well.
+/// cut into blocks; exactly stamped samples give the same stamps as well. A copy follows the stream by itself.
 class StreamSimulation : private core::ImpactSink
 {
 public:
@@ -84,6 +84,12 @@ public:
 
   /// Back to rest; the next block starts a stream. An open episode is answered as cut short.
   const Answer& reset();
+
+  /// Whether an episode is open, which reset() would cut short.
+  bool inContact() const
+  {
+    return rules_.started() && simulation_->inContact();
+  }
 
   /// The model that the sample taken last was simulated with.
   const core::SwitchedModel& model() const
