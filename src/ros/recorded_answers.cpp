@@ -182,7 +182,8 @@ void RecordedAnswers::findStretches()
 
 std::size_t RecordedAnswers::blockOf(std::uint64_t seq, const ros::Time& stamp, std::size_t hint) const
 {
-  const auto inside = [&](std::size_t stretch)
+  // Samples that are missing behind a stretch may have been bridged.
+  const auto inside = [&](std::size_t stretch, bool or_behind)
   {
     const auto first = excitation_.begin() + static_cast<std::ptrdiff_t>(stretches_[stretch]);
     const auto last = stretch + 1 < stretches_.size()
@@ -190,7 +191,7 @@ std::size_t RecordedAnswers::blockOf(std::uint64_t seq, const ros::Time& stamp, 
                           : excitation_.end();
     const auto after = std::upper_bound(
         first, last, seq, [](std::uint64_t sample, const BlockHead& block) { return sample < block.seq; });
-    if (after == first || (after == last && seq >= (after - 1)->end()))
+    if (after == first || (after == last && seq >= (after - 1)->end() && !or_behind))
     {
       return none;
     }
@@ -207,15 +208,18 @@ std::size_t RecordedAnswers::blockOf(std::uint64_t seq, const ros::Time& stamp, 
   }
   const std::size_t middle = static_cast<std::size_t>(std::upper_bound(stretches_.begin() + 1, stretches_.end(), hint) -
                                                       stretches_.begin() - 1);
-  for (std::size_t away = 0; away < stretches_.size(); ++away)
+  for (const bool or_behind : {false, true})
   {
-    for (const std::size_t stretch : {middle - away, middle + away})
+    for (std::size_t away = 0; away < stretches_.size(); ++away)
     {
-      // Below the first, the difference wraps around.
-      const std::size_t block = stretch < stretches_.size() ? inside(stretch) : none;
-      if (block != none)
+      for (const std::size_t stretch : {middle - away, middle + away})
       {
-        return block;
+        // Below the first, the difference wraps around.
+        const std::size_t block = stretch < stretches_.size() ? inside(stretch, or_behind) : none;
+        if (block != none)
+        {
+          return block;
+        }
       }
     }
   }

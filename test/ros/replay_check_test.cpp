@@ -395,6 +395,19 @@ TEST_F(ReplayCheck, FollowsAStreamThatRestartsBridgesAndRefuses)
                                      "refused, 1 not taken\n"));
 }
 
+TEST_F(ReplayCheck, FollowsAClockThatSteps)
+{
+  Recorder recorder(parameters_);
+  recorder.play(0, 2000);
+  recorder.play(Recorder::block(2000, 999.93));  // refused, and bridged over
+  recorder.play(2400, 4000);
+  recorder.play(4000, 6000, 5000.0);
+  recorder.play(6000, 8000);
+  const Outcome outcome = check(recorder);
+  expectIdentical(outcome, "19 blocks, 7600 samples, ");
+  EXPECT_THAT(outcome.out, HasSubstr("\n3 starts from rest, 0 changes of the contact, 1 gaps bridged, 1 blocks refused"));
+}
+
 TEST_F(ReplayCheck, FindsAResetAndAnotherSimulator)
 {
   Recorder recorder(parameters_);

@@ -1,0 +1,453 @@
+#!/usr/bin/python3
+"""What goes wrong on a ship, staged with real processes; doc/operations.md says what comes of it."""
+
+import math
+import os
+import re
+import resource
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from xmlrpc.client import ServerProxy
+
+import rosbag
+import rosgraph
+import rospkg
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from roslib.packages import find_node
+from rosgraph_msgs.msg import Clock
+
+from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
+from vibro_impact.msg import BaseExcitation, Gap
+
+PACKAGE = rospkg.RosPack().get_path("vibro_impact")
+TOPICS = ["base_excitation", "gap", "contact_force", "impact", "model_info"]
+RATE = 10000.0
+BLOCK = 100
+
+
+def configuration(**other):
+    with open(os.path.join(PACKAGE, "config", "limiting_case.yaml")) as stream:
+        return dict(yaml.safe_load(stream), diagnostic_period=0.1, **other)
+
+
+def sine(duration, **other):
+    """Near the resonance: an impact a cycle."""
+    parameters = {
+        "signal": {"type": "sine", "acceleration": 10.0, "frequency": 434.0, "duration": duration},
+        "sample_rate": RATE, "block_rate": RATE / BLOCK, "linger": 0.2, "timeout": PATIENCE}
+    parameters.update(other)
+    return parameters
+
+
+def block(seq, stamp):
+    """Of the same sine, for tests that choose the stamps."""
+    message = BaseExcitation(seq=seq, sample_period=1.0 / RATE)
+    message.header.stamp = rospy.Time.from_sec(stamp)
+    message.acceleration = [10.0 * math.sin(2.0 * math.pi * 434.0 * i / RATE) for i in range(seq, seq + BLOCK)]
+    return message
+
+
+def memory(process):
+    """Resident memory in MB."""
+    with open("/proc/%d/status" % process.pid) as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS:")) / 1000.0
+
+
+def recorded(path, topic):
+    with rosbag.Bag(path) as bag:
+        return [record.message for record in bag.read_messages() if record.topic.split("/")[-1] == topic]
+
+
+def free_port():
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+class FaultsTest(NodeProcessTest):
+    node = "simulator"
+
+    def setUp(self):
+        super().setUp()
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.directory = directory.name
+        self.bag = os.path.join(self.directory, "run.bag")
+        self.values = {}
+        self.interfaces.append(rospy.Subscriber("/diagnostics", DiagnosticArray, self.on_diagnostics))
+
+    def on_diagnostics(self, message):
+        for status in message.status:
+            name = status.name.lstrip("/")
+            if name.startswith(self.namespace.lstrip("/") + "/simulator: "):
+                self.values.update({value.key: value.value for value in status.values})
+
+    def spawn(self, command, **options):
+        process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT, **options)
+        self.processes.append(process)
+        return process
+
+    def start_node(self, node, parameters, **options):
+        rospy.set_param(self.namespace + "/" + node, parameters)
+        return self.spawn([find_node("vibro_impact", node)[0], "__ns:=" + self.namespace, "__name:=" + node], **options)
+
+    def record(self, *options, bag=None, name="record", topics=None, **process):
+        return self.spawn([find_node("rosbag", "record")[0], "-O", bag or self.bag, "-b", "0", "--tcpnodelay", *options,
+                           *(topics or TOPICS), "__ns:=" + self.namespace, "__name:=" + name], **process)
+
+    def end(self, process, status=0, ask=signal.SIGINT):
+        process.send_signal(ask)
+        self.assertEqual(process.wait(PATIENCE), status, self.printed())
+
+    def expect(self, condition):
+        self.assertTrue(wait_until(condition), self.printed())
+
+    def ended(self, shaker):
+        """How many samples it has published, as it says itself."""
+        self.assertEqual(shaker.wait(PATIENCE), 0, self.printed())
+        return int(re.findall(r"published (\d+) samples", self.printed())[-1])
+
+    def samples(self, *kinds):
+        return sum(int(self.values.get("Samples " + kind, 0)) for kind in kinds)
+
+    def expect_balance(self, sent):
+        """Whatever was sent to the simulator was received, refused, discarded while it paused, or counted as lost."""
+        self.expect(lambda: self.samples("accepted", "refused", "discarded", "lost") == sent)
+
+    def subscribe(self, topic, kind):
+        messages = []
+        self.interfaces.append(rospy.Subscriber(self.namespace + "/" + topic, kind, messages.append, queue_size=None))
+        return messages
+
+    def check(self, *arguments, bag=None):
+        result = subprocess.run([find_node("vibro_impact", "replay_check")[0], bag or self.bag, *arguments],
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
+        return result.returncode, result.stdout + result.stderr
+
+    def has_written(self, recorder, **messages):
+        """Whether the recorder has received so many messages of these topics, and sleeps."""
+        address = rosgraph.Master(rospy.get_name()).lookupNode(self.namespace + "/record")
+        # roscpp says of each topic [number of the connection, bytes, messages, ...].
+        received = {topic: sum(connection[2] for connection in connections)
+                    for topic, connections in ServerProxy(address).getBusStats(rospy.get_name())[1]}
+        tasks = "/proc/%d/task" % recorder.pid
+        states = [open(os.path.join(tasks, task, "stat")).read().rpartition(")")[2].split()[0] for task in os.listdir(tasks)]
+        return set(states) == {"S"} and all(
+            received.get(self.namespace + "/" + topic, 0) >= count for topic, count in messages.items())
+
+    def end_recorder(self, recorder):
+        """Ends it when it has written all that the simulator has published."""
+        accepted, impacts = int(self.values["Blocks accepted"]), int(self.values["Impacts"])
+        self.expect(lambda: self.has_written(recorder, gap=accepted, contact_force=accepted, impact=impacts))
+        self.end(recorder)
+
+    def expect_identical(self, samples, bag=None):
+        status, report = self.check(bag=bag)
+        self.assertEqual(status, 0, report)
+        self.assertIn("identical: ", report)
+        self.assertIn(", %d samples, " % samples, report)
+
+    def expect_identical_where_compared(self, bag=None):
+        status, report = self.check("--allow-gaps", bag=bag)
+        self.assertEqual(status, 0, report)
+        return report
+
+    def process_of(self, node):
+        return ServerProxy(rosgraph.Master(rospy.get_name()).lookupNode(node)).getPid(rospy.get_name())[2]
+
+    def test_simulator_killed_and_respawned(self):
+        gaps = self.subscribe("gap", Gap)
+        rospy.set_param(self.namespace + "/simulator/diagnostic_period", 0.1)
+        launch = self.spawn(["roslaunch", os.path.join(PACKAGE, "launch", "simulator.launch"), "respawn:=true",
+                             "diagnostic_period:=0.1"],
+                            env=dict(os.environ, ROS_NAMESPACE=self.namespace))
+        recorder = self.record()
+        shaker = self.start_node("shaker", sine(3.0, recorder="record"))
+        self.expect(lambda: len(gaps) > 50)
+        node = self.namespace + "/simulator"
+        first = self.process_of(node)
+        self.values.clear()
+        os.kill(first, signal.SIGKILL)
+        self.assertIsNotNone(shaker.wait(PATIENCE))
+        sent = 30000
+        self.expect(lambda: self.process_of(node) != first)
+        self.expect(lambda: gaps[-1].seq == sent - BLOCK)
+        self.end(recorder)
+        self.end(launch)
+        # The recorder, which nothing has happened to, has all that was sent.
+        self.assertEqual(sum(len(message.acceleration) for message in recorded(self.bag, "base_excitation")), sent)
+        report = self.expect_identical_where_compared()
+        self.assertIn("2 starts from rest (1 by a reset or another simulator)", report)
+        # What came while nobody was there is named; the rest is counted by the second simulator.
+        missing = re.search(r"not compared: topic \S+/gap: seq (\d+) to (\d+) ", report)
+        self.assertIsNotNone(missing, report)
+        counted = self.samples("accepted", "refused", "lost")
+        self.assertLess(int(missing.group(1)), sent - counted + BLOCK)
+        self.assertGreaterEqual(int(missing.group(2)) + 1, sent - counted)
+
+    def test_shaker_killed_and_restarted(self):
+        self.start_node("simulator", configuration())
+        recorder = self.record()
+        gaps = self.subscribe("gap", Gap)
+        shaker = self.start_node("shaker", sine(1000.0, recorder="record"))
+        self.expect(lambda: len(gaps) > 50)
+        shaker.kill()
+        shaker.wait()
+        before = len(gaps)
+        sent = self.ended(self.start_node("shaker", sine(1.0, recorder="record")))
+        self.assertEqual(sent, 10000)
+        self.expect(lambda: int(self.values.get("Restarts", 0)) == 1 and gaps[-1].seq == sent - BLOCK)
+        self.assertGreaterEqual(len(gaps), before + sent // BLOCK)
+        self.expect_balance(len(gaps) * BLOCK)
+        self.assertEqual(self.samples("lost", "refused"), 0)
+        self.end(recorder)
+        # A block that one of two subscribers still got may be missing at the other.
+        self.assertIn("\n2 starts from rest, ", self.expect_identical_where_compared())
+        self.assertLessEqual(abs(len(recorded(self.bag, "base_excitation")) - len(gaps)), 1)
+
+    def test_recorder_killed_in_the_middle_of_a_chunk(self):
+        self.start_node("simulator", configuration())
+        recorder = self.record("--chunksize=128")
+        parameters = sine(0.0, speed=0.0, max_blocks_ahead=20, wait_for_subscribers=2)
+        parameters["signal"] = {"type": "stepped_sine", "acceleration": 10.0, "start_frequency": 420.0,
+                                "stop_frequency": 450.0, "frequency_step": 1.0, "cycles_per_step": 100}
+        gaps = self.subscribe("gap", Gap)
+        shaker = self.start_node("shaker", parameters)
+        self.expect(lambda: gaps and gaps[-1].seq > 30000)
+        recorder.kill()
+        recorder.wait()
+        sent = self.ended(shaker)
+        self.expect_balance(sent)  # the others never noticed
+        active = self.bag + ".active"
+        status, report = self.check(bag=active)
+        self.assertEqual(status, 2)
+        self.assertIn("has no index, the recording did not end properly; 'rosbag reindex' repairs it", report)
+        subprocess.check_call(["rosbag", "reindex", active], stdout=subprocess.DEVNULL)
+        self.expect_identical_where_compared(bag=active)
+        self.assertGreater(len(recorded(active, "base_excitation")), 100)
+        report = subprocess.check_output(
+            [find_node("vibro_impact", "extract_frf")[0], active, "--allow-gaps", "--out", self.directory + "/frf"],
+            universal_newlines=True)
+        self.assertGreater(int(re.search(r"(\d+) steps found", report).group(1)), 3)
+
+    def test_subscriber_that_stops_reading(self):
+        queue = 50
+        simulator = self.start_node("simulator", configuration(queue_size=queue))
+        recorder = self.record()
+        slow_bag = os.path.join(self.directory, "slow.bag")
+        slow = self.record(bag=slow_bag, name="slow", topics=["gap", "impact"])
+        gaps = self.subscribe("gap", Gap)
+        # Blocks of 20 kB, 12 MB/s: more than what the kernel takes in for a program that does not read.
+        parameters = sine(60.0, speed=5.0, sample_rate=250000.0, block_rate=100.0, wait_for_subscribers=2,
+                          recorder="record")
+        shaker = self.start_node("shaker", parameters)
+        self.expect(lambda: len(gaps) > 100 and is_connected(self.namespace + "/simulator", [self.namespace + "/gap"]))
+        before = memory(simulator)
+        slow.send_signal(signal.SIGSTOP)
+        stopped = time.monotonic()
+        heard = len(gaps)
+        most = before
+        while time.monotonic() < stopped + 10.0 and shaker.poll() is None:
+            most = max(most, memory(simulator))
+            time.sleep(0.1)
+        slow.send_signal(signal.SIGCONT)
+        # Two queues of 50 blocks of 20 kB; what came meanwhile is a hundred times that.
+        self.assertLess(most - before, 30.0, "memory before, MB: %.1f" % before)
+        self.assertGreater(len(gaps), heard + 20 * queue)
+        sent = self.ended(shaker)  # and the recorder has lost nothing, or the shaker would have failed
+        self.expect_balance(sent)
+        self.assertEqual(self.samples("lost", "refused"), 0)
+        self.end(slow)
+        self.end(recorder)
+        self.expect_identical(sent)
+        # What the stopped one has missed it can see, and the simulator says so, too.
+        numbers = [message.seq for message in recorded(slow_bag, "gap")]
+        size = len(gaps[0].gap)
+        missed = sum((after - number) // size - 1 for number, after in zip(numbers, numbers[1:]))
+        self.assertGreater(missed, 0)
+        self.assertIn("Messages dropped", self.values)
+        self.assertGreater(int(self.values["Messages dropped"]), 0)
+
+    def test_master_stopped_and_restarted(self):
+        port = free_port()
+        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
+
+        def start_master():
+            master = self.spawn(["rosmaster", "--core", "-p", str(port)], env=environment)
+            proxy = ServerProxy(environment["ROS_MASTER_URI"])
+
+            def answers():
+                try:
+                    return proxy.getPid("/test")[0] == 1
+                except OSError:
+                    return False
+
+            self.expect(answers)
+            return master, proxy
+
+        def start(node, parameters):
+            proxy.setParam("/test", "%s/%s" % (self.namespace, node), parameters)
+            return self.spawn([find_node("vibro_impact", node)[0], "__ns:=" + self.namespace, "__name:=" + node],
+                              env=environment)
+
+        master, proxy = start_master()
+        simulator = start("simulator", configuration())
+        recorder = self.record(env=environment)
+        shaker = start("shaker", sine(4.0, recorder="record", progress_period=0.5))
+        self.expect(lambda: " of 4.0 s" in self.printed())
+        self.end(master, 0)
+        printed = self.printed().count(" of 4.0 s")
+        self.expect(lambda: self.printed().count(" of 4.0 s") >= printed + 2)
+        start_master()
+        sent = self.ended(shaker)
+        self.assertEqual(sent, 40000)
+        self.end(simulator)
+        self.end(recorder)
+        self.expect_identical(sent)
+
+    def test_nodes_end_without_a_master(self):
+        port = free_port()
+        environment = dict(os.environ, ROS_MASTER_URI="http://localhost:%d" % port)
+        master = self.spawn(["rosmaster", "--core", "-p", str(port)], env=environment)
+        proxy = ServerProxy(environment["ROS_MASTER_URI"])
+        shaker = self.spawn([find_node("vibro_impact", "shaker")[0], "__ns:=" + self.namespace], env=environment)
+
+        def told():
+            try:
+                return proxy.setParam("/test", self.namespace + "/simulator", configuration())[0] == 1
+            except OSError:
+                return False
+
+        self.expect(told)
+        shaker.wait(PATIENCE)  # it has no parameters
+        proxy.setParam("/test", self.namespace + "/shaker", sine(1000.0))
+        simulator = self.spawn([find_node("vibro_impact", "simulator")[0], "__ns:=" + self.namespace], env=environment)
+        shaker = self.spawn([find_node("vibro_impact", "shaker")[0], "__ns:=" + self.namespace], env=environment)
+        self.expect(lambda: " of 1000.0 s" in self.printed())
+        self.end(master, 0)
+        self.end(simulator)
+        self.end(shaker)
+
+    def play(self, blocks, gaps, recorder, refused=()):
+        """Sends one block after another, each when the one before is answered."""
+        publisher = self.advertise()
+        for message in blocks:
+            answered = len(gaps)
+            publisher.publish(message)
+            if message.seq not in refused:
+                self.expect(lambda expected=answered + 1: len(gaps) == expected)
+            if message.seq % (10 * BLOCK) == 0:
+                # The recorder's queue takes 100 impacts.
+                self.expect(lambda: self.has_written(recorder, gap=len(gaps)))
+
+    def advertise(self):
+        publisher = rospy.Publisher(self.namespace + "/base_excitation", BaseExcitation, queue_size=1000)
+        self.interfaces.append(publisher)
+        self.expect(lambda: publisher.get_num_connections() == 2 and is_connected(
+            self.namespace + "/simulator", [self.namespace + "/gap", "/diagnostics"]))
+        return publisher
+
+    def connected_recorder(self):
+        """A recorder to which the simulator sends all that there will be."""
+        recorder = self.record()
+        address = rosgraph.Master(rospy.get_name())
+
+        def connected():
+            try:
+                _, _, connections = ServerProxy(address.lookupNode(self.namespace + "/simulator")).getBusInfo("/test")
+            except (rosgraph.MasterException, OSError):
+                return False
+            topics = {connection[4] for connection in connections if connection[1] == self.namespace + "/record"}
+            return topics.issuperset(self.namespace + "/" + topic for topic in TOPICS[1:])
+
+        self.expect(connected)
+        return recorder
+
+    def test_clock_of_the_stream_steps_back_and_forth(self):
+        gaps = self.subscribe("gap", Gap)
+        self.start_node("simulator", configuration())
+        recorder = self.connected_recorder()
+        blocks = []
+        offset = 1.7e9
+        for seq in range(0, 100 * BLOCK, BLOCK):
+            # An hour on, back again, a little back within what is a repetition, and for good.
+            offset += {20: 3600.0, 40: -3600.0, 60: -0.06, 61: 0.06, 80: -5.0}.get(seq // BLOCK, 0.0)
+            blocks.append(block(seq, offset + seq / RATE))
+        self.play(blocks, gaps, recorder, refused=[60 * BLOCK])
+        self.expect_balance(len(blocks) * BLOCK + BLOCK)  # the refused one is missing when the next one comes
+        self.assertEqual(self.values["Restarts"], "3")
+        self.assertEqual(self.values["Blocks refused"], "1")
+        self.assertEqual(self.samples("lost"), BLOCK)
+        self.assertEqual(len(gaps), 99)
+        self.end_recorder(recorder)
+        self.expect_identical(99 * BLOCK)
+
+    def test_simulated_clock_steps_back_and_forth(self):
+        gaps = self.subscribe("gap", Gap)
+        rospy.set_param("/use_sim_time", True)
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
+        self.start_node("simulator", configuration())
+        clock = rospy.Publisher("/clock", Clock, queue_size=10)
+        self.interfaces.append(clock)
+        self.expect(lambda: clock.get_num_connections() == 1)
+        rospy.set_param("/use_sim_time", False)
+        recorder = self.connected_recorder()
+        times = [1000.0, 5000.0, 4000.0, 0.0, 1.0e9, 999.0]
+
+        def blocks():
+            for seq in range(0, 60 * BLOCK, BLOCK):
+                if seq % (10 * BLOCK) == 0:
+                    clock.publish(Clock(clock=rospy.Time.from_sec(times[seq // (10 * BLOCK)])))
+                yield block(seq, 1.7e9 + seq / RATE)
+
+        self.play(blocks(), gaps, recorder)
+        self.expect_balance(60 * BLOCK)
+        self.assertEqual(self.values["Restarts"], "0")
+        self.assertEqual(len(gaps), 60)
+        self.end_recorder(recorder)
+        self.expect_identical(60 * BLOCK)
+
+    def test_disk_full_while_recording(self):
+        limit = 1 << 20
+        self.start_node("simulator", configuration())
+        # A limit on the size of its files is to a program what a full disk is: a write that fails.
+        recorder = self.record(
+            "--chunksize=64", "--min-space=0",
+            preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
+        gaps = self.subscribe("gap", Gap)
+        shaker = self.start_node("shaker", sine(20.0, speed=10.0, wait_for_subscribers=2, recorder="record", timeout=2.0))
+        self.expect(lambda: len(gaps) > 100)
+        status = shaker.wait(PATIENCE)
+        print("shaker", status, "recorder", recorder.poll(), self.printed())
+        self.fail("look")
+
+    def test_configuration_edited_wrongly_between_restarts(self):
+        simulator = self.start_node("simulator", configuration())
+        recorder = self.record()
+        sent = self.ended(self.start_node("shaker", sine(1.0, recorder="record")))
+        self.expect_balance(sent)
+        self.end(simulator)
+        self.end(recorder)
+        wrong = configuration()
+        wrong["contact"]["stiffness"] = "1e4 N/m"
+        wrong["beam1"]["lenght"] = wrong["beam1"].pop("length")
+        wrong["max_bridged_gap"] = -1.0
+        self.assertEqual(self.start_node("simulator", wrong).wait(PATIENCE), 1)
+        printed = self.printed()
+        self.assertEqual(printed.count("FATAL"), 1, printed)
+        for fault in ["contact.stiffness", "1e4 N/m", "beam1.length is missing", "lenght", "max_bridged_gap = -1"]:
+            self.assertIn(fault, printed)
+        self.assertNotIn(self.namespace + "/gap", [topic for topic, _ in rospy.get_published_topics()])
+        self.expect_identical(sent)
+
+
+if __name__ == "__main__":
+    rospy.init_node("faults_test")
+    rostest.rosrun("vibro_impact", "faults_test", FaultsTest)
