@@ -37,10 +37,11 @@ def configuration(**other):
 
 
 def sine(duration, **other):
-    """Near the resonance: an impact a cycle."""
+    """Near the resonance, an impact a cycle; for a simulator and a recorder."""
     parameters = {
         "signal": {"type": "sine", "acceleration": 10.0, "frequency": 434.0, "duration": duration},
-        "sample_rate": RATE, "block_rate": RATE / BLOCK, "linger": 0.2, "timeout": PATIENCE}
+        "sample_rate": RATE, "block_rate": RATE / BLOCK, "wait_for_subscribers": 2, "linger": 0.2,
+        "timeout": PATIENCE}
     parameters.update(other)
     return parameters
 
@@ -130,6 +131,22 @@ class FaultsTest(NodeProcessTest):
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, check=False)
         return result.returncode, result.stdout + result.stderr
 
+    def connected_recorder(self, *options):
+        """A recorder to which the simulator sends all that there will be."""
+        recorder = self.record(*options)
+        address = rosgraph.Master(rospy.get_name())
+
+        def connected():
+            try:
+                _, _, connections = ServerProxy(address.lookupNode(self.namespace + "/simulator")).getBusInfo("/test")
+            except (rosgraph.MasterException, OSError):
+                return False
+            topics = {connection[4] for connection in connections if connection[1] == self.namespace + "/record"}
+            return topics.issuperset(self.namespace + "/" + topic for topic in TOPICS[1:])
+
+        self.expect(connected)
+        return recorder
+
     def has_written(self, recorder, **messages):
         """Whether the recorder has received so many messages of these topics, and sleeps."""
         address = rosgraph.Master(rospy.get_name()).lookupNode(self.namespace + "/record")
@@ -217,8 +234,8 @@ class FaultsTest(NodeProcessTest):
 
     def test_recorder_killed_in_the_middle_of_a_chunk(self):
         self.start_node("simulator", configuration())
-        recorder = self.record("--chunksize=128")
-        parameters = sine(0.0, speed=0.0, max_blocks_ahead=20, wait_for_subscribers=2)
+        recorder = self.connected_recorder("--chunksize=128")
+        parameters = sine(0.0, speed=0.0, max_blocks_ahead=20)
         parameters["signal"] = {"type": "stepped_sine", "acceleration": 10.0, "start_frequency": 420.0,
                                 "stop_frequency": 450.0, "frequency_step": 1.0, "cycles_per_step": 100}
         gaps = self.subscribe("gap", Gap)
@@ -321,7 +338,7 @@ class FaultsTest(NodeProcessTest):
         environment = self.own_environment()
         master, proxy = self.start_master(environment)
         simulator = self.start_at(proxy, environment, "simulator", configuration())
-        shaker = self.start_at(proxy, environment, "shaker", sine(1000.0, progress_period=0.5))
+        shaker = self.start_at(proxy, environment, "shaker", sine(1000.0, wait_for_subscribers=1, progress_period=0.5))
         self.expect(lambda: " x real time" in self.printed())
         self.end(master)
         self.end(simulator)
@@ -345,22 +362,6 @@ class FaultsTest(NodeProcessTest):
         self.expect(lambda: publisher.get_num_connections() == 2 and is_connected(
             self.namespace + "/simulator", [self.namespace + "/gap", "/diagnostics"]))
         return publisher
-
-    def connected_recorder(self):
-        """A recorder to which the simulator sends all that there will be."""
-        recorder = self.record()
-        address = rosgraph.Master(rospy.get_name())
-
-        def connected():
-            try:
-                _, _, connections = ServerProxy(address.lookupNode(self.namespace + "/simulator")).getBusInfo("/test")
-            except (rosgraph.MasterException, OSError):
-                return False
-            topics = {connection[4] for connection in connections if connection[1] == self.namespace + "/record"}
-            return topics.issuperset(self.namespace + "/" + topic for topic in TOPICS[1:])
-
-        self.expect(connected)
-        return recorder
 
     def test_clock_of_the_stream_steps_back_and_forth(self):
         gaps = self.subscribe("gap", Gap)
@@ -415,7 +416,7 @@ class FaultsTest(NodeProcessTest):
             preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
         gaps = self.subscribe("gap", Gap)
-        shaker = self.start_node("shaker", sine(20.0, speed=10.0, wait_for_subscribers=2, recorder="record", timeout=2.0))
+        shaker = self.start_node("shaker", sine(20.0, speed=10.0, recorder="record", timeout=2.0))
         # The recorder dies of it. The shaker, which waits for it, says so and ends with a failure.
         self.assertEqual(recorder.wait(PATIENCE), -signal.SIGABRT, self.printed())
         self.assertEqual(shaker.wait(PATIENCE), 1, self.printed())
@@ -423,7 +424,7 @@ class FaultsTest(NodeProcessTest):
         self.expect(lambda: self.samples("accepted") == len(gaps) * BLOCK)
         self.assertEqual(self.samples("lost", "refused"), 0)
         # The simulator goes on.
-        sent = self.ended(self.start_node("shaker", sine(0.5)))
+        sent = self.ended(self.start_node("shaker", sine(0.5, wait_for_subscribers=1)))
         self.expect(lambda: gaps[-1].seq == sent - BLOCK)
         self.assertIsNone(simulator.poll())
         # What is on the disk can be used elsewhere.

@@ -405,7 +405,8 @@ TEST_F(ReplayCheck, FollowsAClockThatSteps)
   recorder.play(6000, 8000);
   const Outcome outcome = check(recorder);
   expectIdentical(outcome, "19 blocks, 7600 samples, ");
-  EXPECT_THAT(outcome.out, HasSubstr("\n3 starts from rest, 0 changes of the contact, 1 gaps bridged, 1 blocks refused"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("\n3 starts from rest, 0 changes of the contact, 1 gaps bridged, 1 blocks refused"));
 }
 
 TEST_F(ReplayCheck, FindsAResetAndAnotherSimulator)
