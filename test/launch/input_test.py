@@ -8,6 +8,7 @@ import subprocess
 
 import rospy
 import rostest
+import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import AccelStamped
 from sensor_msgs.msg import Imu
@@ -183,6 +184,20 @@ class InputTest(NodeProcessTest):
         self.assertTrue(wait_until(lambda: text in self.printed()), self.printed())
         self.assertTrue(wait_until(lambda: "still waiting for data: " + text in self.printed()), self.printed())
         self.assertIsNone(self.processes[-1].poll())
+
+    def test_the_launch_file_sets_what_is_asked_for(self):
+        def launched(*arguments):
+            output = subprocess.check_output(
+                ["roslaunch", "--dump-params", "vibro_impact", "simulator.launch", *arguments], universal_newlines=True)
+            values = yaml.safe_load(output)
+            keys = ("input", "axis", "frame_id", "sample_period", "offset", "offset_duration", "max_stamp_jitter")
+            return {key: values["/simulator/" + key] for key in keys if "/simulator/" + key in values}
+
+        self.assertEqual(launched(), {"input": "block"})
+        self.assertEqual(launched("input:=imu", "axis:=-x", "sample_period:=0.004", "offset:=mean", "offset_duration:=5"),
+                         {"input": "imu", "axis": "-x", "sample_period": 0.004, "offset": "mean", "offset_duration": 5.0})
+        self.assertEqual(launched("input:=accel", "frame_id:=sensor", "offset:=0", "max_stamp_jitter:=0.1"),
+                         {"input": "accel", "frame_id": "sensor", "offset": "0", "max_stamp_jitter": 0.1})
 
 
 if __name__ == "__main__":
