@@ -5,9 +5,7 @@ import math
 import os
 import signal
 import subprocess
-import tempfile
 
-import rosbag
 import rosgraph
 import rospkg
 import rospy
@@ -164,53 +162,6 @@ class SimulatorProcessTest(NodeProcessTest):
         self.assertIn(rospy.get_name(), complaints()[0])
         self.assertIn("/rostopic_", complaints()[0])
         self.assertTrue(all(gap.seq != 7 for gap in gaps), "a block of the second publisher was taken")
-
-    def test_a_bag_played_at_any_speed_gives_the_same_impacts(self):
-        parameters = configuration()
-        parameters["diagnostic_period"] = 0.1
-        self.start(parameters)
-        publisher = self.advertise()
-        impacts = self.subscribe(self.namespace + "/impact", Impact)
-        diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
-        self.connect(publisher, "impact", "/diagnostics")
-        # Near the resonance, then at rest: nothing stays open.
-        samples = [50.0 * math.sin(1.6 * 1705.6 * i * PERIOD) for i in range(20000)] + [0.0] * 5000
-        blocks = [block(i, samples[i:i + 250]) for i in range(0, len(samples), 250)]
-
-        def counts():
-            """Blocks that the node has accepted, and impacts that it has published."""
-            values = [{value.key: value.value for status in message.status for value in status.values}
-                      for message in diagnostics[-1:]]
-            return [(int(value["Blocks accepted"]), int(value["Impacts"])) for value in values if "Impacts" in value]
-
-        def answer(streams):
-            """The impacts of the last one of so many streams, without what roscpp writes into their headers."""
-            self.assertTrue(wait_until(lambda: counts() and counts()[0][0] == streams * len(blocks)), self.printed())
-            total = counts()[0][1]
-            self.assertEqual(total % streams, 0)
-            self.assertTrue(wait_until(lambda: len(impacts) == total // streams), self.printed())
-            answer = [(str(impact.header.stamp), impact.number, impact.seq, impact.offset, impact.duration,
-                       impact.impulse, impact.peak_force, impact.peak_time, impact.approach_speed,
-                       impact.separation_speed, impact.energy_lost, impact.cut_short) for impact in impacts]
-            impacts.clear()
-            return answer
-
-        for message in blocks:
-            publisher.publish(message)
-        live = answer(1)
-        self.assertGreater(len(live), 100)
-        publisher.unregister()
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        with rosbag.Bag(directory.name + "/run.bag", "w") as bag:
-            for message in blocks:
-                bag.write("base_excitation", message, message.header.stamp)
-        for streams, rate in [(2, "0.5"), (3, "20")]:
-            subprocess.check_call(
-                ["rosbag", "play", "--quiet", "--rate", rate, "--delay", "1", "--wait-for-subscribers",
-                 directory.name + "/run.bag", "base_excitation:=" + self.namespace + "/base_excitation"],
-                stdout=subprocess.DEVNULL)
-            self.assertEqual(answer(streams), live, "at rate " + rate)
 
     def expect_clean_end(self, ask):
         """The process ends by what `ask` does to it."""

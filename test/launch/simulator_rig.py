@@ -6,6 +6,7 @@ import rospkg
 import rospy
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
+from std_srvs.srv import Trigger
 
 from node_process import PATIENCE, is_connected, wait_until
 from vibro_impact.msg import BaseExcitation, ContactForce, Gap, Impact, ModelInfo
@@ -44,6 +45,7 @@ class SimulatorRig:
         if kind:
             self.advertise(kind)
         rospy.wait_for_service(self.name + "/set_contact", PATIENCE)
+        self.reset = rospy.ServiceProxy(self.name + "/reset", Trigger)
         self.set_contact = rospy.ServiceProxy(self.name + "/set_contact", SetContact)
 
     def advertise(self, kind):
@@ -61,10 +63,13 @@ class SimulatorRig:
         if not infos or info.number > infos[-1].number:
             infos.append(info)
 
+    def hears(self):
+        """Whether nothing that the simulator says is missed."""
+        return self.messages["model_info"] and is_connected(self.name, self.topics)
+
     def connect(self):
         self.test.assertTrue(wait_until(
-            lambda: self.publisher.get_num_connections() == 1 and self.messages["model_info"]
-            and is_connected(self.name, self.topics)), self.test.printed())
+            lambda: self.publisher.get_num_connections() == 1 and self.hears()), self.test.printed())
 
     def statuses(self):
         """All statuses of this simulator so far, the latest first."""
