@@ -427,6 +427,63 @@ TEST(SampleGrid, noMoreThanSoManySamplesWait)
   EXPECT_EQ(*stream.grid().offset(), 2.0);
 }
 
+TEST(SampleGrid, whateverComesTheBlocksAreAStream)
+{
+  std::mt19937_64 random(11);
+  const auto any = [&random](std::size_t count) { return static_cast<std::size_t>(random() % count); };
+  const std::vector<Stamp> steps = {0,
+                                    1,
+                                    2,
+                                    999,
+                                    500000,
+                                    999999,
+                                    1000000,
+                                    1000001,
+                                    1499999,
+                                    1500000,
+                                    1500001,
+                                    7 * millisecond,
+                                    30 * millisecond,
+                                    second,
+                                    3600 * second,
+                                    -1,
+                                    -millisecond,
+                                    -second,
+                                    -3600 * second};
+  const std::vector<double> values = {0.0,    -1.0, 2.5, std::nan(""), std::numeric_limits<double>::infinity(),
+                                      -1.0e6, 99.0};
+  for (int run = 0; run < 300; ++run)
+  {
+    GridParameters parameters;
+    const std::vector<std::optional<double>> periods = {std::nullopt, 1.0e-9, 1.0e-3, 0.7e-3, 1.0e3};
+    parameters.sample_period = periods[any(periods.size())];
+    parameters.offset = any(2) == 0 ? std::optional<double>(1.0) : std::nullopt;
+    parameters.offset_duration = 0.05;
+    const StreamLimits limits;
+    SampleGrid grid(parameters, limits, "accel.linear.z");
+    Stamp stamp = begin;
+    std::uint64_t next = 0;
+    for (int i = 0; i < 1000; ++i)
+    {
+      stamp += any(4) == 0 ? steps[any(steps.size())] : millisecond;
+      const SampleGrid::Answer& answer = grid.take(stamp, any(20) == 0 ? values[any(values.size())] : 1.0);
+      ASSERT_EQ(answer.refused == 0, answer.refusal.empty());
+      for (const Samples& block : answer.blocks)
+      {
+        ASSERT_TRUE(block.seq >= next || block.seq == 0) << block.seq << " after " << next;
+        ASSERT_FALSE(block.values.empty());
+        ASSERT_LE(block.stamp, stamp + 1);
+        ASSERT_EQ(block.sample_period, *grid.samplePeriod());
+        for (const double sample : block.values)
+        {
+          ASSERT_LE(std::abs(sample), 2.0 * limits.max_acceleration);
+        }
+        next = block.seq + block.values.size();
+      }
+    }
+  }
+}
+
 TEST(SampleGrid, theEndOfTimeIsSurvived)
 {
   Stream stream(declared());
