@@ -194,10 +194,11 @@ class InputTest(NodeProcessTest):
             return {key: values["/simulator/" + key] for key in keys if "/simulator/" + key in values}
 
         self.assertEqual(launched(), {"input": "block"})
-        self.assertEqual(launched("input:=imu", "axis:=-x", "sample_period:=0.004", "offset:=mean", "offset_duration:=5"),
-                         {"input": "imu", "axis": "-x", "sample_period": 0.004, "offset": "mean", "offset_duration": 5.0})
-        self.assertEqual(launched("input:=accel", "frame_id:=sensor", "offset:=0", "max_stamp_jitter:=0.1"),
-                         {"input": "accel", "frame_id": "sensor", "offset": "0", "max_stamp_jitter": 0.1})
+        self.assertEqual(
+            launched("input:=imu", "axis:=-x", "frame_id:=sensor", "sample_period:=0.004", "offset:=9.81",
+                     "offset_duration:=5", "max_stamp_jitter:=0.1"),
+            {"input": "imu", "axis": "-x", "frame_id": "sensor", "sample_period": 0.004, "offset": "9.81",
+             "offset_duration": 5.0, "max_stamp_jitter": 0.1})
 
 
 if __name__ == "__main__":
