@@ -222,7 +222,7 @@ void ModelStatistics::report(const core::EnergyAccount& account, DiagnosticStatu
   reported_ = totals_;
 }
 
-OutputQueueStatistics::OutputQueueStatistics(std::vector<const OutputQueue*> queues,
+OutputQueueStatistics::OutputQueueStatistics(const std::vector<const OutputQueue*>& queues,
                                              const DiagnosticThresholds& thresholds)
     : thresholds_(thresholds)
 {

@@ -137,7 +137,7 @@ class OutputQueueStatistics
 {
 public:
   /// The queues must outlive this object.
-  OutputQueueStatistics(std::vector<const OutputQueue*> queues, const DiagnosticThresholds& thresholds);
+  OutputQueueStatistics(const std::vector<const OutputQueue*>& queues, const DiagnosticThresholds& thresholds);
 
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
