@@ -434,6 +434,16 @@ class FaultsTest(NodeProcessTest):
         self.expect_identical_where_compared(bag=active)
         self.assertGreater(len(recorded(active, "gap")), 50)
 
+    def test_no_room_to_record_from_the_start(self):
+        self.start_node("simulator", configuration())
+        recorder = self.record("--min-space=9000000G")
+        shaker = self.start_node("shaker", sine(1.0, recorder="record", timeout=1.0))
+        self.assertEqual(recorder.wait(PATIENCE), 1, self.printed())
+        self.assertEqual(shaker.wait(PATIENCE), 1, self.printed())
+        self.assertIn("in vain for ", self.printed())
+        self.assertIn("%s/record to record %s/gap" % (self.namespace, self.namespace), self.printed())
+        self.assertEqual(self.samples("accepted", "refused", "lost"), 0)
+
     def test_configuration_edited_wrongly_between_restarts(self):
         simulator = self.start_node("simulator", configuration())
         recorder = self.record()
