@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <limits>
 #include <map>
 #include <memory>
 #include <set>
@@ -245,6 +246,19 @@ public:
     meet(run, {impact, block, true}, recorded_, recomputed_);
   }
 
+  /// Where the motion of this run began is only inferred from what came later. A motion may forget its beginning to the
+  /// last bit; the numbers of its impacts do not.
+  void doubt(std::uint64_t run)
+  {
+    doubtful_.insert(run);
+  }
+
+  /// A run that the number of an impact has shown to have begun elsewhere, once; 0: none.
+  std::uint64_t takeRefuted()
+  {
+    return std::exchange(refuted_now_, 0);
+  }
+
   /// What has found no counterpart. `judged(run, impact, block)`: whether the end of a recorded impact was recomputed.
   template <typename Judged>
   void finish(ReplayReport& report, const Judged& judged)
@@ -252,7 +266,7 @@ public:
     for (const auto& [key, entry] : recorded_)
     {
       const std::uint64_t run = std::get<0>(key);
-      if (!judged(run, entry.impact, entry.block))
+      if (doubtful_.count(run) != 0 || !judged(run, entry.impact, entry.block))
       {
         ++report.impacts_not_compared;
         continue;
@@ -275,6 +289,7 @@ public:
     }
     noteMissing(report);
     report.impacts = identical_;
+    report.impacts_not_compared += not_compared_;
   }
 
   const std::optional<ReplayDifference>& difference() const
@@ -298,6 +313,12 @@ private:
 
   void meet(std::uint64_t run, const Entry& entry, Entries& own, Entries& others)
   {
+    const bool is_recorded = &own == &recorded_;
+    if (refuted_.count(run) != 0)
+    {
+      not_compared_ += is_recorded ? 1 : 0;
+      return;
+    }
     const Key key{run, entry.impact.seq, entry.impact.offset};
     const auto other = others.find(key);
     if (other == others.end())
@@ -305,12 +326,34 @@ private:
       own.emplace(key, entry);
       return;
     }
-    const bool is_recorded = &own == &recorded_;
+    if (doubtful_.erase(run) != 0 && other->second.impact.number != entry.impact.number)
+    {
+      not_compared_ += is_recorded ? 1 : 0;
+      refute(run);
+      return;
+    }
     const auto found = is_recorded ? compare(topic_, entry.impact, other->second.impact)
                                    : compare(topic_, other->second.impact, entry.impact);
     identical_ += found ? 0 : 1;
     note(found, is_recorded ? entry.block : other->second.block);
     others.erase(other);
+  }
+
+  void refute(std::uint64_t run)
+  {
+    refuted_.insert(run);
+    refuted_now_ = run;
+    const auto drop = [run](Entries& entries)
+    {
+      constexpr double before = -std::numeric_limits<double>::infinity();
+      const auto first = entries.lower_bound(Key{run, 0, before});
+      const auto last = entries.lower_bound(Key{run + 1, 0, before});
+      const auto count = static_cast<std::uint64_t>(std::distance(first, last));
+      entries.erase(first, last);
+      return count;
+    };
+    not_compared_ += drop(recorded_);
+    drop(recomputed_);
   }
 
   void note(const std::optional<ReplayDifference>& found, std::size_t block)
@@ -358,6 +401,9 @@ private:
   std::string topic_;
   Entries recorded_, recomputed_;
   std::uint64_t identical_ = 0;
+  std::uint64_t not_compared_ = 0;
+  std::set<std::uint64_t> doubtful_, refuted_;
+  std::uint64_t refuted_now_ = 0;
   std::optional<ReplayDifference> difference_;
   std::size_t difference_block_ = 0;
 };
@@ -402,6 +448,7 @@ public:
     const std::size_t block = answers_.blockOf(impact.seq, impact.header.stamp, hint);
     unplaced_.emplace_back(block == none ? hint : block, impact);
     placeImpacts();
+    dropRefuted();
   }
 
   void onModelInfo(const ModelInfo& /*info*/) override
@@ -436,6 +483,7 @@ private:
   StreamSimulation atRest(std::size_t epoch, const core::ContactParameters& contact);
   void adopt(const Block& block, const Answers& recorded);
   void placeImpacts();
+  void dropRefuted();
   void noteMissing(const std::string& topic, const Block& block);
   void flushMissing(const std::string& topic);
   void closeLoss();
@@ -461,9 +509,16 @@ private:
   std::uint64_t run_ = 0;                   // from rest to rest; 0: none
   std::vector<std::uint64_t> run_of_;       // by block; 0: not recomputed
   std::set<std::uint64_t> open_runs_;       // whose end is not known
-  std::size_t taken_ = 0;                   // the last block that was
-  std::size_t decided_ = 0;                 // blocks so far
-  std::optional<Loss> lost_;                // while the motion is not known
+  struct Inferred
+  {
+    bool unannounced = false;
+    std::uint64_t blocks = 0, samples = 0;  // compared
+    std::uint64_t first = 0, last = 0;      // numbers of samples
+  };
+  std::map<std::uint64_t, Inferred> inferred_;  // runs that began with a block whose answer is not recorded
+  std::size_t taken_ = 0;                       // the last block that was
+  std::size_t decided_ = 0;                     // blocks so far
+  std::optional<Loss> lost_;                    // while the motion is not known
   std::uint64_t lost_blocks_ = 0;
   std::map<std::string, std::pair<Loss, std::uint64_t>> missing_;  // by topic: the answers that are, and how many
   ContactReplay contact_;
@@ -545,6 +600,7 @@ void Replay::judge(const Block& block, const Answers& recorded)
   before_.reset();
   decided_ = block.index + 1;
   placeImpacts();
+  dropRefuted();
 }
 
 /// Whether the motion so far explains the recorded answers. Of blocks without one either the recording has lost the
@@ -610,7 +666,8 @@ bool Replay::startAnew(const Block& block, const Answers& recorded, std::optiona
         {
           open_runs_.insert(run_);
         }
-        report_.unannounced += player_ ? 1 : 0;
+        const bool unannounced = player_.has_value();
+        report_.unannounced += unannounced ? 1 : 0;
         for (std::size_t i = 0; i + before < unanswered_.size(); ++i)
         {
           noteMissing(topics_.gap, unanswered_[i]);
@@ -618,6 +675,10 @@ bool Replay::startAnew(const Block& block, const Answers& recorded, std::optiona
         }
         player_ = std::move(player);
         adopt(block, recorded);
+        if (const auto inferred = inferred_.find(run_); inferred != inferred_.end())
+        {
+          inferred->second.unannounced = unannounced;
+        }
         return true;
       }
       difference = difference ? difference : found;
@@ -821,6 +882,11 @@ void Replay::adopt(const Block& block, const Answers& recorded)
     {
       ++run_;
       ++report_.starts;
+      if (!is_answered)
+      {
+        inferred_[run_].first = block.samples.seq;
+        impacts_.doubt(run_);
+      }
     }
     else
     {
@@ -855,6 +921,47 @@ void Replay::adopt(const Block& block, const Answers& recorded)
   {
     ++report_.blocks;
     report_.samples += block.samples.values.size();
+  }
+  if (const auto inferred = inferred_.find(run_); inferred != inferred_.end())
+  {
+    const bool both = recorded.gap && recorded.force;
+    inferred->second.blocks += both ? 1 : 0;
+    inferred->second.samples += both ? block.samples.values.size() : 0;
+    inferred->second.last = block.samples.seq + block.samples.values.size();
+  }
+}
+
+/// A motion that did not begin where it was inferred to is not known.
+void Replay::dropRefuted()
+{
+  const std::uint64_t run = impacts_.takeRefuted();
+  if (run == 0)
+  {
+    return;
+  }
+  const Inferred inferred = inferred_[run];
+  inferred_.erase(run);
+  report_.blocks -= inferred.blocks;
+  report_.samples -= inferred.samples;
+  --report_.starts;
+  report_.unannounced -= inferred.unannounced ? 1 : 0;
+  const Loss loss{inferred.first, inferred.last, "it is not known which of the blocks before them the simulator had"};
+  const bool goes_on = run == run_ && player_;
+  if (goes_on)
+  {
+    contact_ = player_->contact;
+    epoch_ = player_->epoch;
+    player_.reset();
+  }
+  const std::optional<Loss> present = lost_;
+  const std::uint64_t present_blocks = lost_blocks_;
+  lost_ = loss;
+  lost_blocks_ = inferred.blocks;
+  if (!goes_on)
+  {
+    closeLoss();
+    lost_ = present;
+    lost_blocks_ = present_blocks;
   }
 }
 

@@ -524,6 +524,26 @@ TEST_F(ReplayCheck, JudgesNothingBehindALostExcitationBeforeTheNextStart)
   EXPECT_THAT(run(bag()).out, HasSubstr(" impacts there\n"));
 }
 
+TEST_F(ReplayCheck, IsNotDeceivedByAMotionThatForgetsItsBeginning)
+{
+  // With such damping two motions under the same drive are soon the same to the last bit.
+  parameters_.damping = {0.3, 0.3};
+  Recorder recorder(parameters_);
+  recorder.play(0, 2000);
+  recorder.answer(Recorder::block(2000));  // two blocks without their excitation
+  recorder.answer(Recorder::block(2400));
+  for (std::uint64_t seq = 2800; seq < 42800; seq += block_size)
+  {
+    recorder.record(Recorder::block(seq));
+    recorder.answer(Recorder::block(seq), false, false);
+  }
+  recorder.play(42800, 44800);
+  recorder.play(0, 2000, 2000.0);
+  expectIncomplete(recorder, "10 blocks, 4000 samples, ",
+                   "it is not known which of the blocks before them the simulator had");
+  EXPECT_THAT(run(bag()).out, HasSubstr("\n2 starts from rest, "));
+}
+
 TEST_F(ReplayCheck, SaysWhichImpactsAreMissing)
 {
   SyntheticRun run = synthetic();
