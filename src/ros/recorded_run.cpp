@@ -208,6 +208,16 @@ struct RecordedRun::Implementation
     }
   }
 
+  /// A topic alone, if there is one.
+  template <typename Message>
+  void readAll(const std::string& topic, const std::function<void(const Message&)>& sink) const
+  {
+    if (!topic.empty())
+    {
+      read({topic}, {}, [&](const rosbag::MessageInstance& instance) { sink(*messageOf<Message>(instance)); });
+    }
+  }
+
   std::string names;  // of the bags, for messages
   std::vector<std::unique_ptr<rosbag::Bag>> bags;
   std::unique_ptr<rosbag::View> everything;  // of everything, for its connections
@@ -251,6 +261,7 @@ RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::strin
     self.topics.impact = self.find<Impact>(name_space, false);
   }
   self.topics.model_info = self.find<ModelInfo>(name_space, whole);
+  self.topics.stream_start = self.find<StreamStart>(name_space, false);
 }
 
 RecordedRun::~RecordedRun() = default;
@@ -305,11 +316,12 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
 
 void RecordedRun::readModelInfo(const std::function<void(const ModelInfo&)>& sink) const
 {
-  if (!implementation_->topics.model_info.empty())
-  {
-    implementation_->read({implementation_->topics.model_info}, {},
-                          [&](const rosbag::MessageInstance& instance) { sink(*messageOf<ModelInfo>(instance)); });
-  }
+  implementation_->readAll<ModelInfo>(implementation_->topics.model_info, sink);
+}
+
+void RecordedRun::readStreamStart(const std::function<void(const StreamStart&)>& sink) const
+{
+  implementation_->readAll<StreamStart>(implementation_->topics.stream_start, sink);
 }
 
 void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress) const

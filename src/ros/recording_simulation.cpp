@@ -1,5 +1,6 @@
 #include "vibro_impact/ros/recording_simulation.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -118,6 +119,10 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
   StreamRecorder recorder(history);
   StreamSimulation simulation(std::make_shared<const core::SwitchedModel>(recorded.parameters), limits);
   simulation.observe(recorder);
+  // Also those that the excitation does not show: after ~reset and ~pause.
+  std::map<std::pair<Stamp, std::uint64_t>, std::string> starts;
+  recording.readStreamStart([&](const StreamStart& start)
+                            { starts[{fromTime(start.header.stamp), start.seq}] = start.reason; });
   ContactReplay contact(recorded);
   RecordingSimulation result;
   Samples samples;
@@ -130,6 +135,12 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
           core::SystemParameters changed = recorded.parameters;
           changed.contact = change.contact;
           simulation.setContact(std::make_shared<const core::SwitchedModel>(changed), change.seq);
+        }
+        const auto start = starts.find({samples.stamp, samples.seq});
+        if (start != starts.end() && result.samples > 0)
+        {
+          simulation.reset();
+          note({Verdict::Action::Restart, 0, start->second}, result);
         }
         const Verdict& verdict = simulation.advance(samples).verdict;
         note(verdict, result);

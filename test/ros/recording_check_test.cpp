@@ -86,7 +86,7 @@ protected:
     }
   }
 
-  RecordingCheck check_{{"/base_excitation", "/gap", "/contact_force", "/impact", "/model_info"}};
+  RecordingCheck check_{{"/base_excitation", "/gap", "/contact_force", "/impact", "/model_info", ""}};
 };
 
 TEST_F(Check, completeRecordingHasNoLoss)
@@ -334,7 +334,7 @@ TEST_F(Check, refusesAStreamWithoutBlocks)
 
 TEST(CheckWithoutImpacts, isRefusedIfAContactHasEnded)
 {
-  RecordingCheck silent({"/base_excitation", "/gap", "/contact_force", "", "/model_info"});
+  RecordingCheck silent({"/base_excitation", "/gap", "/contact_force", "", "/model_info", ""});
   silent.takeExcitation(block(0));
   silent.takeGap(block(0));
   silent.takeContactForce(block(0), none);

@@ -275,6 +275,38 @@ TEST_F(Simulate, TakesAStreamByTheRulesOfTheNode)
   EXPECT_EQ(history.at("gap")[2100], 0.0);  // at rest
 }
 
+TEST_F(Simulate, BeginsAnewWhereTheRecordingSaysSo)
+{
+  constexpr std::uint64_t anew = 2000;
+  SyntheticRun recording = recorded();
+  for (const std::uint64_t seq : {std::uint64_t{0}, anew})
+  {
+    StreamStart start;
+    start.header.stamp = SyntheticRun::stampOf(seq, sample_period);
+    start.seq = seq;
+    start.sample_period = sample_period;
+    start.reason = seq == 0 ? "first block" : "reset";
+    recording.starts.push_back(start);
+  }
+  const Outcome outcome = run("--bag " + bag(recording) + " --out " + results());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("1 restarts from rest, 0 blocks refused\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("first of these: reset"));
+
+  const std::vector<double> samples = excitation();
+  const SyntheticRun rest(parameters_, {samples.begin() + anew, samples.end()}, sample_period);
+  const auto history = table(results(), "history.csv");
+  std::size_t row = anew;
+  for (const Gap& block : rest.gaps)
+  {
+    for (const double gap : block.gap)
+    {
+      ASSERT_EQ(history.at("gap").at(row++), gap);
+    }
+  }
+  EXPECT_EQ(row, history.at("gap").size());
+}
+
 TEST_F(Simulate, BeginsInTheGivenMotion)
 {
   parameters_.contact.clearance = 1.0;

@@ -16,6 +16,7 @@
 #include <vibro_impact/Gap.h>
 #include <vibro_impact/Impact.h>
 #include <vibro_impact/ModelInfo.h>
+#include <vibro_impact/StreamStart.h>
 
 #include "../core/common.h"
 #include "../core/played_signal.h"
@@ -113,6 +114,10 @@ struct SyntheticRun
     {
       put("model_info", message, 0.0);
     }
+    for (const StreamStart& message : starts)
+    {
+      put("stream_start", message, 0.0);
+    }
     for (const BaseExcitation& message : excitations)
     {
       put("base_excitation", message, 0.001);
@@ -140,5 +145,6 @@ struct SyntheticRun
   std::vector<ContactForce> forces;
   std::vector<Impact> impacts;
   std::vector<ModelInfo> infos;
+  std::vector<StreamStart> starts;  ///< none unless a test gives some
 };
 }  // namespace vibro_impact::graph

@@ -10,6 +10,7 @@
 #include <vibro_impact/BaseExcitation.h>
 #include <vibro_impact/Impact.h>
 #include <vibro_impact/ModelInfo.h>
+#include <vibro_impact/StreamStart.h>
 
 namespace vibro_impact::graph
 {
@@ -48,6 +49,7 @@ struct RecordedTopics
   std::string contact_force;
   std::string impact;
   std::string model_info;
+  std::string stream_start;
 };
 
 /// What a recording must hold.
@@ -82,6 +84,9 @@ public:
 
   /// Reads model_info alone.
   void readModelInfo(const std::function<void(const ModelInfo&)>& sink) const;
+
+  /// Reads stream_start alone.
+  void readStreamStart(const std::function<void(const StreamStart&)>& sink) const;
 
   /// Reads the excitation alone.
   void readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress = {}) const;
