@@ -121,8 +121,10 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
   simulation.observe(recorder);
   // Also those that the excitation does not show: after ~reset and ~pause.
   std::map<std::pair<Stamp, std::uint64_t>, std::string> starts;
-  recording.readStreamStart([&](const StreamStart& start)
-                            { starts[{fromTime(start.header.stamp), start.seq}] = start.reason; });
+  recording.readStreamStart(
+      [&](const StreamStart& start) {
+        starts[{fromTime(start.header.stamp), start.seq}] = start.reason;
+      });
   ContactReplay contact(recorded);
   RecordingSimulation result;
   Samples samples;

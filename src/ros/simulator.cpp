@@ -116,7 +116,7 @@ void Simulator::onExcitation(const Samples& excitation)
     return;
   }
   const StreamSimulation::Answer& answer = simulation_.advance(excitation);
-  input_statistics_.count(answer.verdict, samples);
+  input_statistics_.count(answer.verdict, excitation.seq, samples);
   log(answer.verdict);
   if (answer.verdict.action == Verdict::Action::Refuse)
   {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace vibro_impact::graph
@@ -9,24 +10,33 @@ namespace vibro_impact::graph
 using diagnostic_msgs::DiagnosticStatus;
 using diagnostic_updater::DiagnosticStatusWrapper;
 
+namespace
+{
+/// More stretches of refused samples than this between two blocks that are taken are not told apart from lost ones.
+constexpr std::size_t most_stretches = 1000;
+}  // namespace
+
 InputStatistics::InputStatistics(std::string topic, const DiagnosticThresholds& thresholds)
     : topic_(std::move(topic)), thresholds_(thresholds)
 {
 }
 
-void InputStatistics::count(const Verdict& verdict, std::size_t samples)
+void InputStatistics::count(const Verdict& verdict, std::uint64_t seq, std::size_t samples)
 {
   if (verdict.action == Verdict::Action::Refuse)
   {
     ++totals_.blocks_refused;
     totals_.samples_refused += samples;
     last_refusal_ = verdict.reason;
+    noteRefused(seq, samples);
     return;
   }
+  const std::uint64_t lost = verdict.missing - refusedWithin(seq - verdict.missing, seq);
+  refused_.clear();
   ++totals_.blocks_accepted;
   totals_.samples_accepted += samples;
-  totals_.samples_lost += verdict.missing;
-  totals_.blocks_lost += verdict.missing / samples + (verdict.missing % samples != 0 ? 1 : 0);
+  totals_.samples_lost += lost;
+  totals_.blocks_lost += lost / samples + (lost % samples != 0 ? 1 : 0);
   if (verdict.action == Verdict::Action::Bridge)
   {
     ++totals_.gaps_bridged;
@@ -36,6 +46,41 @@ void InputStatistics::count(const Verdict& verdict, std::size_t samples)
   {
     ++totals_.restarts;
   }
+}
+
+void InputStatistics::noteRefused(std::uint64_t seq, std::size_t samples)
+{
+  if (seq > std::numeric_limits<std::uint64_t>::max() - samples)
+  {
+    return;  // such numbers are never missing
+  }
+  if (!refused_.empty() && refused_.back().second == seq)
+  {
+    refused_.back().second += samples;
+  }
+  else if (refused_.size() < most_stretches)
+  {
+    refused_.emplace_back(seq, seq + samples);
+  }
+}
+
+std::uint64_t InputStatistics::refusedWithin(std::uint64_t first, std::uint64_t end) const
+{
+  // In the order of the numbers, whatever order they came in, and each once.
+  auto stretches = refused_;
+  std::sort(stretches.begin(), stretches.end());
+  std::uint64_t count = 0;
+  for (const auto& [begin, stretch_end] : stretches)
+  {
+    const std::uint64_t from = std::max(begin, first);
+    const std::uint64_t to = std::min(stretch_end, end);
+    if (from < to)
+    {
+      count += to - from;
+      first = to;
+    }
+  }
+  return count;
 }
 
 void InputStatistics::countRefusal(const std::string& reason, std::uint64_t samples)
@@ -87,7 +132,7 @@ void InputStatistics::report(std::optional<double> input_age, bool paused, Diagn
   const std::uint64_t lost = totals_.samples_lost - reported_.samples_lost;
   if (static_cast<double>(lost) > thresholds_.warn_lost_samples)
   {
-    const bool bridged = totals_.samples_bridged - reported_.samples_bridged == lost;
+    const bool bridged = totals_.restarts == reported_.restarts;
     status.mergeSummaryf(DiagnosticStatus::WARN, "%llu missing samples%s", static_cast<unsigned long long>(lost),
                          bridged ? " bridged" : "");
   }

@@ -67,8 +67,8 @@ TEST_F(InputStatisticsTest, waitsForTheFirstBlock)
 
 TEST_F(InputStatisticsTest, allIsWell)
 {
-  statistics_.count({Action::Start, 0, {}}, 100);
-  statistics_.count({Action::Continue, 0, {}}, 50);
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
+  statistics_.count({Action::Continue, 0, {}}, 100, 50);
   Report now = report();
   EXPECT_TRUE(says(now, DiagnosticStatus::OK, "receiving"));
   EXPECT_EQ(now.value["Blocks accepted"], "2");
@@ -80,14 +80,14 @@ TEST_F(InputStatisticsTest, allIsWell)
 
 TEST_F(InputStatisticsTest, silenceIsStale)
 {
-  statistics_.count({Action::Start, 0, {}}, 100);
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
   EXPECT_TRUE(
       says(report(3.25), DiagnosticStatus::STALE, "no data on topic /base_excitation for 3.2 s: time stands still"));
 }
 
 TEST_F(InputStatisticsTest, refusalIsAnErrorOnce)
 {
-  statistics_.count({Action::Refuse, 0, "the reason"}, 100);
+  statistics_.count({Action::Refuse, 0, "the reason"}, 100, 100);
   Report now = report();
   EXPECT_TRUE(says(now, DiagnosticStatus::ERROR, "block refused: the reason"));
   EXPECT_EQ(now.value["Blocks refused"], "1");
@@ -101,8 +101,8 @@ TEST_F(InputStatisticsTest, refusalIsAnErrorOnce)
 
 TEST_F(InputStatisticsTest, bridgeIsAWarningAndCounted)
 {
-  statistics_.count({Action::Start, 0, {}}, 100);
-  statistics_.count({Action::Bridge, 150, "the reason"}, 100);
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
+  statistics_.count({Action::Bridge, 150, "the reason"}, 250, 100);
   Report now = report();
   EXPECT_TRUE(says(now, DiagnosticStatus::WARN, "150 missing samples bridged"));
   EXPECT_EQ(now.value["Gaps bridged"], "1");
@@ -112,13 +112,31 @@ TEST_F(InputStatisticsTest, bridgeIsAWarningAndCounted)
   EXPECT_EQ(now.value["Restarts"], "0");
 }
 
+TEST_F(InputStatisticsTest, whatWasRefusedIsNotLostAsWell)
+{
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
+  statistics_.count({Action::Refuse, 0, "a repetition"}, 0, 100);
+  statistics_.count({Action::Refuse, 0, "not a number"}, 100, 100);
+  statistics_.count({Action::Refuse, 0, "not a number"}, 200, 100);
+  statistics_.count({Action::Refuse, 0, "the same again"}, 200, 100);
+  statistics_.count({Action::Bridge, 250, "the reason"}, 350, 50);  // 300 to 350 never came
+  Report now = report();
+  EXPECT_EQ(now.value["Samples accepted"], "150");
+  EXPECT_EQ(now.value["Samples refused"], "400");
+  EXPECT_EQ(now.value["Samples lost"], "50");
+  EXPECT_EQ(now.value["Samples bridged"], "250");
+  EXPECT_EQ(now.value["Blocks lost"], "1");
+  statistics_.count({Action::Bridge, 100, "the reason"}, 500, 100);
+  EXPECT_EQ(report().value["Samples lost"], "150");
+}
+
 TEST_F(InputStatisticsTest, lossesBelowTheThresholdAreCountedOnly)
 {
   DiagnosticThresholds thresholds;
   thresholds.warn_lost_samples = 150.0;
   InputStatistics statistics("/base_excitation", thresholds);
-  statistics.count({Action::Start, 0, {}}, 100);
-  statistics.count({Action::Bridge, 150, "the reason"}, 100);
+  statistics.count({Action::Start, 0, {}}, 0, 100);
+  statistics.count({Action::Bridge, 150, "the reason"}, 250, 100);
   DiagnosticStatusWrapper status;
   statistics.report(0.1, false, status);
   EXPECT_TRUE(says(Report(status), DiagnosticStatus::OK, "receiving"));
@@ -127,8 +145,8 @@ TEST_F(InputStatisticsTest, lossesBelowTheThresholdAreCountedOnly)
 
 TEST_F(InputStatisticsTest, restartIsAWarningAndCounted)
 {
-  statistics_.count({Action::Start, 0, {}}, 100);
-  statistics_.count({Action::Restart, 5000, "the reason"}, 100);
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
+  statistics_.count({Action::Restart, 5000, "the reason"}, 5100, 100);
   Report now = report();
   EXPECT_TRUE(says(now, DiagnosticStatus::WARN, "restarted from rest"));
   EXPECT_EQ(now.value["Restarts"], "1");
@@ -139,7 +157,7 @@ TEST_F(InputStatisticsTest, restartIsAWarningAndCounted)
 
 TEST_F(InputStatisticsTest, twoPublishersAreNamed)
 {
-  statistics_.count({Action::Start, 0, {}}, 100);
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
   statistics_.countSecondPublisher("/shaker", "/play_1", 100);
   Report now = report();
   EXPECT_TRUE(says(now, DiagnosticStatus::ERROR, "two publishers on topic /base_excitation: /shaker and /play_1"));
@@ -149,7 +167,7 @@ TEST_F(InputStatisticsTest, twoPublishersAreNamed)
 
 TEST_F(InputStatisticsTest, whatComesDuringAPauseIsCounted)
 {
-  statistics_.count({Action::Start, 0, {}}, 100);
+  statistics_.count({Action::Start, 0, {}}, 0, 100);
   statistics_.countDiscarded(100);
   Report now = report(0.1, true);
   EXPECT_TRUE(says(now, DiagnosticStatus::WARN, "paused"));

@@ -30,15 +30,15 @@ struct DiagnosticThresholds
 /// Counts what a simulator hears: what it takes, refuses and misses.
 ///
 /// Of all samples sent since the first one taken, each is in one of the counts of accepted, refused, discarded
-/// (while paused) and lost ones; of the lost ones, some were bridged.
+/// (while paused) and lost ones. Bridged are those of the refused and the lost ones that lie in short gaps.
 class InputStatistics
 {
 public:
   /// `topic`: name of the excitation's topic.
   InputStatistics(std::string topic, const DiagnosticThresholds& thresholds);
 
-  /// A block of `samples` samples was judged.
-  void count(const Verdict& verdict, std::size_t samples);
+  /// A block of `samples` samples from number `seq` on was judged.
+  void count(const Verdict& verdict, std::uint64_t seq, std::size_t samples);
 
   /// So many single samples were refused before they could be put into a block.
   void countRefusal(const std::string& reason, std::uint64_t samples);
@@ -70,10 +70,15 @@ private:
     std::uint64_t restarts = 0;
   };
 
+  void noteRefused(std::uint64_t seq, std::size_t samples);
+  std::uint64_t refusedWithin(std::uint64_t first, std::uint64_t end) const;
+
   std::string topic_;
   DiagnosticThresholds thresholds_;
   Totals totals_;
   Totals reported_;
+  /// Numbers [first, end) of the samples refused since the last block taken: they came, though they are missing.
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> refused_;
   std::string last_refusal_;
   std::string publishers_;
 };
