@@ -147,6 +147,7 @@ def replay_check(bag, *arguments):
 
 
 def main(run, arguments):
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # by way of all that is to be put away
     try:
         sys.exit(0 if run(arguments) else 1)
     except Failure as failure:
