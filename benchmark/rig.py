@@ -51,10 +51,21 @@ def memory(process):
 class Rig:
     """A master and nodes on this machine alone; all ends with the `with` block, and their files are gone."""
 
+    def __init__(self, folder):
+        self.folder = folder
+        self.processes = []
+
     def __enter__(self):
         self.directory = tempfile.TemporaryDirectory(prefix="vibro_impact_", dir=self.folder)
         self.log = open(os.path.join(self.directory.name, "log"), "w+")
-        self.processes = []
+        try:
+            self.start_master()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def start_master(self):
         with socket.socket() as listener:
             listener.bind(("127.0.0.1", 0))
             port = listener.getsockname()[1]
@@ -63,10 +74,6 @@ class Rig:
         self.master = ServerProxy(self.environment["ROS_MASTER_URI"])
         self.spawn(["rosmaster", "--core", "-p", str(port)])
         self.expect(lambda: self.master.getPid("/benchmark")[0] == 1, "the master")
-        return self
-
-    def __init__(self, folder):
-        self.folder = folder
 
     def __exit__(self, *_):
         for process in reversed(self.processes):
@@ -150,7 +157,7 @@ def main(run, arguments):
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # by way of all that is to be put away
     try:
         sys.exit(0 if run(arguments) else 1)
-    except Failure as failure:
+    except (Failure, OSError) as failure:
         sys.exit("error: %s" % failure)
     except KeyboardInterrupt:
         sys.exit(130)
