@@ -21,7 +21,9 @@ namespace vibro_impact::core
 namespace
 {
 // As GCC and Clang offer it: two registers where one is too short.
-using Packet = double __attribute__((vector_size(lanes * sizeof(double)), aligned(sizeof(double)), may_alias));
+using Packet __attribute__((aligned(sizeof(double)), may_alias)) =
+    double __attribute__((vector_size(lanes * sizeof(double))));
+static_assert(alignof(Packet) == alignof(double), "packets lie wherever numbers do");
 
 const Packet* packets(const double* numbers)
 {

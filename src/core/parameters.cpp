@@ -170,7 +170,7 @@ private:
 
   bool checkStructure(const std::string& name, const StructureParameters& parameters)
   {
-    return std::visit([this, &name](const auto& kind) { return checkKind(name, kind); }, parameters);
+    return std::visit([this, &name](const auto& kind) { return this->checkKind(name, kind); }, parameters);
   }
 
   static bool checkKind(const std::string& /*name*/, const RigidSurface& /*surface*/)
