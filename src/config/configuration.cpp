@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include "text_file.h"
@@ -555,11 +556,86 @@ private:
   std::map<std::string, std::string> table_files_;  // where the modal table of a key comes from
 };
 
-std::vector<YAML::Node> documents(const std::string& yaml, const std::string& name)
+// Counts what a text holds before nodes are made of it. yaml-cpp takes what belongs to no document, such as a comma at
+// the beginning, for one empty document after the other without end, and its older versions have no bound on nesting.
+class Outline : public YAML::EventHandler
+{
+public:
+  explicit Outline(const std::string& yaml)
+  {
+    std::istringstream stream(yaml);
+    YAML::Parser parser(stream);
+    while (documents_ < 2 && parser.HandleNextDocument(*this))
+    {
+      ++documents_;
+    }
+  }
+
+  // Two stand for any number above one.
+  int documents() const
+  {
+    return documents_;
+  }
+
+private:
+  void OnDocumentStart(const YAML::Mark& /*mark*/) override
+  {
+  }
+  void OnDocumentEnd() override
+  {
+  }
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override
+  {
+  }
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override
+  {
+  }
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override
+  {
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                       YAML::EmitterStyle::value /*style*/) override
+  {
+    enter(mark);
+  }
+  void OnSequenceEnd() override
+  {
+    --depth_;
+  }
+  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override
+  {
+    enter(mark);
+  }
+  void OnMapEnd() override
+  {
+    --depth_;
+  }
+
+  void enter(const YAML::Mark& mark)
+  {
+    constexpr int deepest = 50;
+    if (++depth_ > deepest)
+    {
+      throw YAML::ParserException(mark, "nested more than " + std::to_string(deepest) + " deep");
+    }
+  }
+
+  int documents_ = 0;
+  int depth_ = 0;
+};
+
+// The one document of a text; a null node if there is none.
+YAML::Node document(const std::string& yaml, const std::string& name)
 {
   try
   {
-    return YAML::LoadAll(yaml);
+    if (Outline(yaml).documents() > 1)
+    {
+      throw Error(name + ": holds more than one YAML document, or text that belongs to none: must be one");
+    }
+    return YAML::Load(yaml);
   }
   catch (const YAML::Exception& error)
   {
@@ -669,16 +745,12 @@ void writeBasis(std::ostream& stream, const core::AttachmentBasis& basis)
 
 core::SystemParameters parse(const std::string& yaml, const std::string& name, const std::string& directory)
 {
-  const std::vector<YAML::Node> nodes = documents(yaml, name);
-  if (nodes.empty() || (nodes.size() == 1 && nodes[0].IsNull()))
+  const YAML::Node node = document(yaml, name);
+  if (node.IsNull())
   {
     throw Error(name + ": is empty: must be a configuration with beam1, beam2, contact, damping, basis");
   }
-  if (nodes.size() > 1)
-  {
-    throw Error(name + ": holds " + std::to_string(nodes.size()) + " YAML documents: must be one");
-  }
-  const Reader reader(nodes[0], directory);
+  const Reader reader(node, directory);
   const std::vector<std::string>& faults = reader.faults();
   if (!faults.empty())
   {

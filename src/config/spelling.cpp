@@ -44,15 +44,25 @@ std::optional<std::string> nearest(const std::string& misspelt, const std::vecto
   {
     return std::nullopt;
   }
-  const auto distance = [&misspelt](const std::string& word) { return editDistance(lowerCase(misspelt), word); };
-  const auto best =
-      std::min_element(words.begin(), words.end(),
-                       [&distance](const std::string& a, const std::string& b) { return distance(a) < distance(b); });
-  if (best == words.end() || 3 * distance(*best) > best->size())
+  const std::string spelt = lowerCase(misspelt);
+  std::optional<std::string> best;
+  std::size_t least = longest;
+  for (const std::string& word : words)
   {
-    return std::nullopt;
+    // Every character that one is longer than the other is a wrong one.
+    const std::size_t longer = std::max(spelt.size(), word.size()) - std::min(spelt.size(), word.size());
+    if (3 * longer > word.size())
+    {
+      continue;
+    }
+    const std::size_t distance = editDistance(spelt, word);
+    if (3 * distance <= word.size() && distance < least)
+    {
+      best = word;
+      least = distance;
+    }
   }
-  return *best;
+  return best;
 }
 
 }  // namespace vibro_impact::config

@@ -338,7 +338,21 @@ TEST(Configuration, RefusesNothingAndTooMuch)
   {
     EXPECT_THAT(complaint(text), HasSubstr("my.yaml: is empty")) << text;
   }
-  EXPECT_THAT(complaint(good + "---\n" + good), HasSubstr("my.yaml: holds 2 YAML documents: must be one"));
+  EXPECT_THAT(complaint(good + "---\n" + good), HasSubstr("my.yaml: holds more than one YAML document"));
+}
+
+// yaml-cpp takes these for documents without end.
+TEST(Configuration, RefusesTextThatBelongsToNoDocument)
+{
+  for (const std::string& text : std::vector<std::string>{", a", good + "}\n", "a: b\n]"})
+  {
+    EXPECT_THAT(complaint(text), HasSubstr("my.yaml: ")) << text;
+  }
+}
+
+TEST(Configuration, RefusesDeepNesting)
+{
+  EXPECT_THAT(complaint(std::string(2000, '[')), HasSubstr("not YAML: nested more than 50 deep"));
 }
 
 TEST(Configuration, SurvivesAnyDamageToTheText)
