@@ -85,7 +85,12 @@ std::vector<std::size_t> locate(const std::vector<std::string>& names, const std
 
 core::ModalTableParameters readModalTable(const std::string& path)
 {
-  std::istringstream text(readTextFile(path, largest_file, "no modal table is"));
+  return parseModalTable(readTextFile(path, largest_file, "no modal table is"), path);
+}
+
+core::ModalTableParameters parseModalTable(const std::string& csv, const std::string& path)
+{
+  std::istringstream text(csv);
   core::ModalTableParameters table;
   std::vector<std::string> names;
   std::vector<std::size_t> positions;

@@ -76,12 +76,24 @@ OutputFile impactTable(const std::vector<core::Response>& responses)
 
 std::vector<ResponseRow> readResponseTable(const std::string& path)
 {
-  return readTable(path, response_columns);
+  std::ifstream file = openTextFile(path);
+  return readResponseTable(file, path);
 }
 
 std::vector<ImpactRow> readImpactTable(const std::string& path)
 {
-  return readTable(path, impact_columns);
+  std::ifstream file = openTextFile(path);
+  return readImpactTable(file, path);
+}
+
+std::vector<ResponseRow> readResponseTable(std::istream& file, const std::string& path)
+{
+  return readTable(file, path, response_columns);
+}
+
+std::vector<ImpactRow> readImpactTable(std::istream& file, const std::string& path)
+{
+  return readTable(file, path, impact_columns);
 }
 
 }  // namespace vibro_impact::config

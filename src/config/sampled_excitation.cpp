@@ -76,7 +76,13 @@ double shortest(double period, double first, double last, double steps)
 
 SampledExcitation readExcitation(const std::string& path)
 {
-  const std::vector<Row> rows = readTable(path, columns);
+  std::ifstream file = openTextFile(path);
+  return readExcitation(file, path);
+}
+
+SampledExcitation readExcitation(std::istream& file, const std::string& path)
+{
+  const std::vector<Row> rows = readTable(file, path, columns);
   if (rows.size() < 2)
   {
     throw Error(path + ": holds " + std::to_string(rows.size()) + (rows.size() == 1 ? " sample" : " samples") +

@@ -89,13 +89,12 @@ std::string writeTable(const std::vector<Column<Row>>& columns, const std::vecto
   return text + '\n';
 }
 
-/// Reads a table back. Columns are found by name; further ones are ignored. Throws Error if the file cannot be read,
-/// lacks a column or holds a row that is too short, too long or not of numbers; the message names file, line and
-/// column.
+/// Reads a table back. Columns are found by name; further ones are ignored. Throws Error if the file called `path`
+/// cannot be read, lacks a column or holds a row that is too short, too long or not of numbers; the message names file,
+/// line and column.
 template <typename Row>
-std::vector<Row> readTable(const std::string& path, const std::vector<Column<Row>>& columns)
+std::vector<Row> readTable(std::istream& file, const std::string& path, const std::vector<Column<Row>>& columns)
 {
-  std::ifstream file = openTextFile(path);
   std::string line;
   if (!std::getline(file, line))
   {

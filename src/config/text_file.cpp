@@ -33,7 +33,7 @@ std::ifstream openTextFile(const std::string& path)
   return file;
 }
 
-void requireWhollyRead(const std::ifstream& file, const std::string& path)
+void requireWhollyRead(const std::istream& file, const std::string& path)
 {
   if (file.bad())
   {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <fstream>
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace vibro_impact::config
 std::ifstream openTextFile(const std::string& path);
 
 /// Throws Error, naming the path, if something went wrong while `file` was read.
-void requireWhollyRead(const std::ifstream& file, const std::string& path);
+void requireWhollyRead(const std::istream& file, const std::string& path);
 
 /// A whole file. Throws Error, naming the path, if it cannot be read or is larger than `largest` bytes, "which `none`".
 std::string readTextFile(const std::string& path, std::size_t largest, const std::string& none);

@@ -17,5 +17,7 @@ namespace vibro_impact::config
 /// those that begin with #. Throws Error, naming the file, the line and the column, if it cannot be read, a column is
 /// missing or twice there, or a cell is no number. Ranges are those of core::findFaults.
 core::ModalTableParameters readModalTable(const std::string& path);
+/// The same of the text of a file that messages call `path`.
+core::ModalTableParameters parseModalTable(const std::string& csv, const std::string& path);
 
 }  // namespace vibro_impact::config

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -38,5 +39,8 @@ OutputFile impactTable(const std::vector<core::Response>& responses);
 /// column.
 std::vector<core::ResponseRow> readResponseTable(const std::string& path);
 std::vector<ImpactRow> readImpactTable(const std::string& path);
+/// The same of an open file that messages call `path`.
+std::vector<core::ResponseRow> readResponseTable(std::istream& file, const std::string& path);
+std::vector<ImpactRow> readImpactTable(std::istream& file, const std::string& path);
 
 }  // namespace vibro_impact::config

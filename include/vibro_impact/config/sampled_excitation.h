@@ -1,5 +1,6 @@
 #pragma once
 
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,7 @@ struct SampledExcitation
 /// shortest decimal number that leads from the first time to the last. Throws Error, with file, line and column, for
 /// what is not such a table, a number that is not finite, unequal steps, and less than two samples.
 SampledExcitation readExcitation(const std::string& path);
+/// The same of an open file that messages call `path`.
+SampledExcitation readExcitation(std::istream& file, const std::string& path);
 
 }  // namespace vibro_impact::config
