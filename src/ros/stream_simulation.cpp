@@ -34,6 +34,13 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
 {
   clearAnswer();
   answer_.verdict = rules_.judge(excitation);
+  const double longest = longestPeriod();
+  if (answer_.verdict.action != Verdict::Action::Refuse && excitation.sample_period > longest)
+  {
+    answer_.verdict = {Verdict::Action::Refuse, 0,
+                       text("sample_period is ", excitation.sample_period, " s, must be at most ", longest,
+                            " s, which are ", max_cycles_per_sample, " cycles of the model's highest mode")};
+  }
   const Verdict::Action action = answer_.verdict.action;
   if (action == Verdict::Action::Refuse)
   {
@@ -103,6 +110,14 @@ void StreamSimulation::rest()
     simulation_->reset(*this);
     rules_.forget();
   }
+}
+
+/// s
+double StreamSimulation::longestPeriod() const
+{
+  constexpr double two_pi = 6.283185307179586;
+  const double highest = std::max(model_->free().frequency.maxCoeff(), model_->contact().frequency.maxCoeff());
+  return two_pi * max_cycles_per_sample / highest;
 }
 
 core::EnergyAccount StreamSimulation::energyAccount() const

@@ -62,6 +62,9 @@ public:
 
   /// More changes of the contact than this do not wait.
   static constexpr std::size_t max_waiting_changes = 1000;
+  /// Cycles that the model's highest mode may make from one sample to the next: the work that a block makes grows with
+  /// them. A block of a longer period is refused.
+  static constexpr double max_cycles_per_sample = 1000.0;
 
   StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits);
 
@@ -108,6 +111,7 @@ private:
   void bridge(std::uint64_t seq, std::uint64_t missing, double from, double to);
   void clearAnswer();
   void rest();
+  double longestPeriod() const;
 
   std::shared_ptr<const core::SwitchedModel> model_;
   std::map<std::uint64_t, std::shared_ptr<const core::SwitchedModel>> waiting_;  ///< by the sample they hold from
