@@ -6,6 +6,7 @@
 #include <ros/message_traits.h>
 
 #include "text.h"
+#include "vibro_impact/ros/checked_subscription.h"
 #include "vibro_impact/ros/conversions.h"
 #include "vibro_impact/ros/node_query.h"
 
@@ -71,8 +72,10 @@ ExcitationInput::ExcitationInput(const SimulatorParameters& parameters, Excitati
 template <typename Message>
 void ExcitationInput::subscribeTo(ros::NodeHandle& node)
 {
-  subscriber_ = node.subscribe("base_excitation", queue_size_, &ExcitationInput::onMessage<Message>, this,
-                               ros::TransportHints().tcpNoDelay());
+  ros::SubscribeOptions options = checkedSubscription<Message>(
+      "base_excitation", queue_size_, [this](const ros::MessageEvent<const Message>& event) { onMessage(event); });
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  subscriber_ = node.subscribe(options);
 }
 
 void ExcitationInput::subscribe(ros::NodeHandle& node)

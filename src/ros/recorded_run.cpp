@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include <ros/message_traits.h>
@@ -12,9 +13,10 @@
 #include <sys/stat.h>
 #include <vibro_impact/ContactForce.h>
 #include <vibro_impact/Gap.h>
-#include <boost/shared_ptr.hpp>
 
+#include "bag_structure.h"
 #include "vibro_impact/config/error.h"
+#include "vibro_impact/ros/checked_stream.h"
 
 namespace vibro_impact::graph
 {
@@ -47,16 +49,8 @@ void requireBag(const std::string& path)
   }
 }
 
-// One line of whatever rosbag had to say.
-std::string damaged(const std::string& path, std::string reason)
-{
-  std::replace(reason.begin(), reason.end(), '\n', ' ');
-  return path + ": is cut off or damaged (" + reason + "); 'rosbag reindex' may rescue what there is";
-}
-
 void openBag(rosbag::Bag& bag, const std::string& path)
 {
-  requireBag(path);
   try
   {
     bag.open(path, rosbag::bagmode::Read);
@@ -65,7 +59,7 @@ void openBag(rosbag::Bag& bag, const std::string& path)
   {
     throw config::Error(path + ": has no index, the recording did not end properly; 'rosbag reindex' repairs it");
   }
-  catch (const ros::Exception& error)
+  catch (const std::runtime_error& error)
   {
     throw config::Error(damaged(path, error.what()));
   }
@@ -108,15 +102,21 @@ BlockHead headOf(const Block& block, std::size_t samples)
 
 // What is certain of a message by its topic's type, unless the type meant something else when it was recorded.
 template <typename Message>
-boost::shared_ptr<Message> messageOf(const rosbag::MessageInstance& instance)
+Message messageOf(const rosbag::MessageInstance& instance)
 {
-  auto message = instance.instantiate<Message>();
-  if (!message)
+  if (instance.getMD5Sum() != ros::message_traits::md5sum<Message>())
   {
     throw config::Error("topic " + instance.getTopic() + ": was recorded with another definition of " +
                         instance.getDataType() + " (" + instance.getMD5Sum() + " instead of " +
                         ros::message_traits::md5sum<Message>() + ")");
   }
+  // MessageInstance::instantiate() trusts the lengths in a message.
+  std::vector<std::uint8_t> bytes(instance.size());
+  ros::serialization::OStream copy(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  instance.write(copy);
+  Message message;
+  CheckedStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  stream.next(message);
   return message;
 }
 }  // namespace
@@ -214,7 +214,7 @@ struct RecordedRun::Implementation
   {
     if (!topic.empty())
     {
-      read({topic}, {}, [&](const rosbag::MessageInstance& instance) { sink(*messageOf<Message>(instance)); });
+      read({topic}, {}, [&](const rosbag::MessageInstance& instance) { sink(messageOf<Message>(instance)); });
     }
   }
 
@@ -236,6 +236,8 @@ RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::strin
   for (const std::string& path : paths)
   {
     self.names += (self.names.empty() ? "" : ", ") + path;
+    requireBag(path);
+    requireSoundBag(path);
     self.bags.push_back(std::make_unique<rosbag::Bag>());
     openBag(*self.bags.back(), path);
   }
@@ -247,7 +249,7 @@ RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::strin
       self.everything->addQuery(*bag);
     }
   }
-  catch (const ros::Exception& error)
+  catch (const std::runtime_error& error)
   {
     throw config::Error(damaged(self.names, error.what()));
   }
@@ -291,25 +293,25 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
                           const std::string& topic = instance.getTopic();
                           if (topic == topics.base_excitation)
                           {
-                            sink.onExcitation(*messageOf<BaseExcitation>(instance));
+                            sink.onExcitation(messageOf<BaseExcitation>(instance));
                           }
                           else if (topic == topics.gap)
                           {
                             const auto block = messageOf<Gap>(instance);
-                            sink.onGap(headOf(*block, block->gap.size()), block->gap);
+                            sink.onGap(headOf(block, block.gap.size()), block.gap);
                           }
                           else if (topic == topics.contact_force)
                           {
                             const auto block = messageOf<ContactForce>(instance);
-                            sink.onContactForce(headOf(*block, block->force.size()), block->force);
+                            sink.onContactForce(headOf(block, block.force.size()), block.force);
                           }
                           else if (topic == topics.impact)
                           {
-                            sink.onImpact(*messageOf<Impact>(instance));
+                            sink.onImpact(messageOf<Impact>(instance));
                           }
                           else
                           {
-                            sink.onModelInfo(*messageOf<ModelInfo>(instance));
+                            sink.onModelInfo(messageOf<ModelInfo>(instance));
                           }
                         });
 }
@@ -327,7 +329,7 @@ void RecordedRun::readStreamStart(const std::function<void(const StreamStart&)>&
 void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress) const
 {
   implementation_->read({implementation_->topics.base_excitation}, progress,
-                        [&](const rosbag::MessageInstance& instance) { sink(*messageOf<BaseExcitation>(instance)); });
+                        [&](const rosbag::MessageInstance& instance) { sink(messageOf<BaseExcitation>(instance)); });
 }
 
 }  // namespace vibro_impact::graph

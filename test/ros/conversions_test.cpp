@@ -1,3 +1,5 @@
+#include <cstdint>
+#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -6,6 +8,7 @@
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/core/switched_model.h"
+#include "vibro_impact/ros/checked_subscription.h"
 #include "vibro_impact/ros/conversions.h"
 
 namespace graph = vibro_impact::graph;
@@ -163,6 +166,31 @@ TEST(ModelInfoConversion, configurationLoadsBack)
 
   message.configuration = "beam1: 3";
   EXPECT_THROW(graph::fromMessage(message), vibro_impact::config::Error);
+}
+
+// roscpp's own stream would make room for 32 GB.
+TEST(CheckedSubscription, ReadsNoLongerArrayThanThereIs)
+{
+  using vibro_impact::BaseExcitation;
+  BaseExcitation message;
+  message.acceleration = {1.0, 2.0};
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream output(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(output, message);
+
+  graph::CheckedCallbackHelper<BaseExcitation> helper([](const ros::MessageEvent<const BaseExcitation>&) {});
+  ros::SubscriptionCallbackHelperDeserializeParams parameters;
+  parameters.buffer = bytes.data();
+  parameters.length = static_cast<std::uint32_t>(bytes.size());
+  const auto read = boost::static_pointer_cast<const BaseExcitation>(helper.deserialize(parameters));
+  EXPECT_EQ(read->acceleration, message.acceleration);
+
+  const std::size_t place_of_length = bytes.size() - 2 * sizeof(double) - sizeof(std::uint32_t);
+  for (const std::uint32_t length : {3U, 0x20000000U, 0xffffffffU})
+  {
+    std::memcpy(bytes.data() + place_of_length, &length, sizeof(length));
+    EXPECT_THROW(helper.deserialize(parameters), ros::serialization::StreamOverrunException) << length;
+  }
 }
 
 }  // namespace
