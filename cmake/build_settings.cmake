@@ -9,10 +9,26 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 # Results must not depend on where the compiler finds it convenient to fuse a product and a sum.
 add_compile_options(-ffp-contract=off)
 
+if(VIBRO_IMPACT_SANITIZE STREQUAL "address")
+  set(sanitizers address,undefined)
+elseif(VIBRO_IMPACT_SANITIZE STREQUAL "thread")
+  set(sanitizers thread)
+elseif(VIBRO_IMPACT_SANITIZE)
+  message(FATAL_ERROR "VIBRO_IMPACT_SANITIZE is '${VIBRO_IMPACT_SANITIZE}', must be address, thread or empty")
+endif()
 if(VIBRO_IMPACT_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=address,undefined)
+  add_compile_options(-fsanitize=${sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${sanitizers})
   add_compile_definitions(VIBRO_IMPACT_SANITIZE)
+endif()
+
+if(VIBRO_IMPACT_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang" OR NOT VIBRO_IMPACT_SANITIZE STREQUAL "address")
+    message(FATAL_ERROR "VIBRO_IMPACT_FUZZ needs CMAKE_CXX_COMPILER=clang++ and VIBRO_IMPACT_SANITIZE=address "
+      "(they are ${CMAKE_CXX_COMPILER_ID} and '${VIBRO_IMPACT_SANITIZE}')")
+  endif()
+  # What the fuzzer steers by.
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 # Our own code only: vibro_impact_target_settings(TARGET).
