@@ -11,7 +11,7 @@
 namespace vibro_impact::graph
 {
 StreamSimulation::StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits)
-    : model_(std::move(model)), rules_(limits)
+    : model_(std::move(model)), rules_(limits), max_cycles_per_sample_(limits.max_cycles_per_sample)
 {
 }
 
@@ -39,7 +39,7 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
   {
     answer_.verdict = {Verdict::Action::Refuse, 0,
                        text("sample_period is ", excitation.sample_period, " s, must be at most ", longest,
-                            " s, which are ", max_cycles_per_sample, " cycles of the model's highest mode")};
+                            " s, which are ", max_cycles_per_sample_, " cycles of the model's highest mode")};
   }
   const Verdict::Action action = answer_.verdict.action;
   if (action == Verdict::Action::Refuse)
@@ -117,7 +117,7 @@ double StreamSimulation::longestPeriod() const
 {
   constexpr double two_pi = 6.283185307179586;
   const double highest = std::max(model_->free().frequency.maxCoeff(), model_->contact().frequency.maxCoeff());
-  return two_pi * max_cycles_per_sample / highest;
+  return two_pi * max_cycles_per_sample_ / highest;
 }
 
 core::EnergyAccount StreamSimulation::energyAccount() const

@@ -81,8 +81,12 @@ class BagTimeTest(NodeProcessTest):
         self.processes.append(player)
         return player
 
-    def play_to_the_end(self, rig, path, *options):
-        self.assertEqual(self.play(rig, path, *options).wait(PATIENCE), 0)
+    def play_until(self, arrived, rig, path, *options):
+        """Plays until all has arrived: the player would not wait for that, and take what it has not sent with it."""
+        player = self.play(rig, path, "--keep-alive", *options)
+        self.assertTrue(wait_until(arrived), rig.seen())
+        player.send_signal(signal.SIGINT)
+        player.wait(PATIENCE)
 
     def reset(self, rig):
         """What is open is cut short."""
@@ -122,8 +126,7 @@ class BagTimeTest(NodeProcessTest):
         path = self.bag(blocks())
         for streams, options in enumerate([["--rate", "0.5"], ["--rate", "5"], ["--immediate"]], 2):
             del rig.messages["impact"][:]
-            self.play_to_the_end(rig, path, *options)
-            self.assertTrue(wait_until(lambda: rig.count("Blocks accepted") == streams * SAMPLES // BLOCK), rig.seen())
+            self.play_until(lambda: rig.count("Blocks accepted") == streams * SAMPLES // BLOCK, rig, path, *options)
             self.reset(rig)
             self.assertEqual([fields(impact) for impact in rig.messages["impact"]], impacts, options)
         for key in ("Blocks refused", "Samples lost", "Restarts"):
@@ -136,8 +139,7 @@ class BagTimeTest(NodeProcessTest):
         for passed, options in enumerate([["--rate", "2"], ["--immediate"]]):
             for topic in ("impact", "excitation_used"):
                 del rig.messages[topic][:]
-            self.play_to_the_end(rig, path, *options)
-            self.assertTrue(wait_until(lambda: rig.count("Messages received") == (passed + 1) * SAMPLES // 5), rig.seen())
+            self.play_until(lambda: rig.count("Messages received") == (passed + 1) * SAMPLES // 5, rig, path, *options)
             self.reset(rig)
             used = [value for block in rig.messages["excitation_used"] for value in block.acceleration]
             self.assertEqual(len(used), SAMPLES // 5)

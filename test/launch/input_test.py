@@ -2,6 +2,7 @@
 """The simulator listens to accelerometers: messages of one stamped sample each, from a real publisher."""
 
 import math
+import os
 import random
 import signal
 import subprocess
@@ -15,7 +16,7 @@ from sensor_msgs.msg import Imu
 from std_msgs.msg import String
 
 from node_process import PATIENCE, NodeProcessTest, wait_until
-from simulator_rig import SimulatorRig, configuration, fields
+from simulator_rig import PACKAGE, SimulatorRig, configuration, fields
 
 PERIOD_NS = 100000  # 10 kHz
 BEGIN = 1700000000
@@ -188,7 +189,7 @@ class InputTest(NodeProcessTest):
     def test_the_launch_file_sets_what_is_asked_for(self):
         def launched(*arguments):
             output = subprocess.check_output(
-                ["roslaunch", "--dump-params", "vibro_impact", "simulator.launch", *arguments], universal_newlines=True)
+                ["roslaunch", "--dump-params", os.path.join(PACKAGE, "launch", "simulator.launch"), *arguments], universal_newlines=True)
             values = yaml.safe_load(output)
             keys = ("input", "axis", "frame_id", "sample_period", "offset", "offset_duration", "max_stamp_jitter")
             return {key: values["/simulator/" + key] for key in keys if "/simulator/" + key in values}

@@ -118,9 +118,9 @@ class SimulatorProcessTest(NodeProcessTest):
         publisher = self.advertise()
         diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
         self.connect(publisher, "/diagnostics")
-        # A quarter of an hour between two samples: thousands of vibrations, most of a second of computing.
-        message = block(0, [1.0e5 * (-1.0) ** i for i in range(12)])
-        message.sample_period = 1000.0
+        # A second between two samples: hundreds of vibrations, and most of a second of computing for all.
+        message = block(0, [1.0e5 * (-1.0) ** i for i in range(1000)])
+        message.sample_period = 1.0
         publisher.publish(message)
 
         def accepted():

@@ -147,10 +147,10 @@ TEST(StreamSimulation, refusesAPeriodOfTooManyCycles)
 {
   StreamSimulation simulation(model(), StreamLimits{});
   Samples excitation = block(0, 10);
-  excitation.sample_period = 2.5;
+  excitation.sample_period = 250.0;
   const auto& answer = simulation.advance(excitation);
   EXPECT_EQ(answer.verdict.action, Action::Refuse);
-  EXPECT_EQ(answer.verdict.reason.find("sample_period is 2.5 s, must be at most 0.12"), 0u) << answer.verdict.reason;
+  EXPECT_EQ(answer.verdict.reason.find("sample_period is 250 s, must be at most 12"), 0u) << answer.verdict.reason;
   EXPECT_TRUE(answer.gap.values.empty());
   EXPECT_EQ(simulation.advance(block(0)).verdict.action, Action::Start);
 }

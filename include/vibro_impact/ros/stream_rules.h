@@ -15,6 +15,9 @@ struct StreamLimits
   double max_bridged_gap = 0.02;    ///< longest stretch of missing samples that is bridged, s
   double max_step_back = 0.1;       ///< a block that goes back by at most this is a repetition; by more, a new start, s
   double max_stamp_jitter = 0.05;   ///< how far a stamp may be off what the count of samples says, s
+  /// Cycles that the model's highest mode may make from one sample to the next: the work for a block grows with them.
+  /// A second of a mode of 100 kHz; the slowest accelerometers are far below.
+  double max_cycles_per_sample = 1.0e5;
 };
 
 /// What is to be done with a block.

@@ -62,9 +62,6 @@ public:
 
   /// More changes of the contact than this do not wait.
   static constexpr std::size_t max_waiting_changes = 1000;
-  /// Cycles that the model's highest mode may make from one sample to the next: the work that a block makes grows with
-  /// them. A block of a longer period is refused.
-  static constexpr double max_cycles_per_sample = 1000.0;
 
   StreamSimulation(std::shared_ptr<const core::SwitchedModel> model, const StreamLimits& limits);
 
@@ -116,6 +113,7 @@ private:
   std::shared_ptr<const core::SwitchedModel> model_;
   std::map<std::uint64_t, std::shared_ptr<const core::SwitchedModel>> waiting_;  ///< by the sample they hold from
   StreamRules rules_;
+  double max_cycles_per_sample_;
   std::optional<core::SampledSimulation> simulation_;
   std::uint64_t first_seq_ = 0;  ///< the sample that found the model at rest
   bool carried_over_ = false;    ///< the open episode began before the block taken last
