@@ -213,9 +213,9 @@ class FaultsTest(NodeProcessTest):
         self.assertGreater(counted, 0)
 
     def test_shaker_killed_and_restarted(self):
+        gaps = self.subscribe("gap", Gap)
         self.start_node("simulator", configuration())
         recorder = self.record()
-        gaps = self.subscribe("gap", Gap)
         shaker = self.start_node("shaker", sine(1000.0, recorder="record"))
         self.expect(lambda: len(gaps) > 50)
         shaker.kill()
@@ -233,12 +233,12 @@ class FaultsTest(NodeProcessTest):
         self.assertLessEqual(abs(len(recorded(self.bag, "base_excitation")) - len(gaps)), 1)
 
     def test_recorder_killed_in_the_middle_of_a_chunk(self):
+        gaps = self.subscribe("gap", Gap)
         self.start_node("simulator", configuration())
         recorder = self.connected_recorder("--chunksize=128")
         parameters = sine(0.0, speed=0.0, max_blocks_ahead=20)
         parameters["signal"] = {"type": "stepped_sine", "acceleration": 10.0, "start_frequency": 420.0,
                                 "stop_frequency": 450.0, "frequency_step": 1.0, "cycles_per_step": 100}
-        gaps = self.subscribe("gap", Gap)
         shaker = self.start_node("shaker", parameters)
         self.expect(lambda: gaps and gaps[-1].seq > 30000)
         recorder.kill()
@@ -258,12 +258,12 @@ class FaultsTest(NodeProcessTest):
         self.assertGreater(int(re.search(r"(\d+) steps found", report).group(1)), 3)
 
     def test_subscriber_that_stops_reading(self):
+        gaps = self.subscribe("gap", Gap)
         queue = 50
         simulator = self.start_node("simulator", configuration(queue_size=queue))
         recorder = self.record()
         slow_bag = os.path.join(self.directory, "slow.bag")
         slow = self.record(bag=slow_bag, name="slow", topics=["gap", "impact"])
-        gaps = self.subscribe("gap", Gap)
         # 200 blocks of 20 kB a second: more than what the kernel takes in for a program that does not read.
         parameters = sine(11.5, sample_rate=500000.0, block_rate=200.0, max_blocks_ahead=queue // 2, recorder="record")
         shaker = self.start_node("shaker", parameters)
@@ -408,6 +408,7 @@ class FaultsTest(NodeProcessTest):
         self.expect_identical(60 * BLOCK)
 
     def test_disk_full_while_recording(self):
+        gaps = self.subscribe("gap", Gap)
         limit = 1 << 20
         simulator = self.start_node("simulator", configuration())
         # A limit on the size of its files is to a program what a full disk is: a write that fails.
@@ -415,7 +416,6 @@ class FaultsTest(NodeProcessTest):
             "--chunksize=64", "--min-space=0",
             preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
-        gaps = self.subscribe("gap", Gap)
         shaker = self.start_node("shaker", sine(20.0, speed=10.0, recorder="record", timeout=2.0))
         # The recorder dies of it. The shaker, which waits for it, says so and ends with a failure.
         self.assertEqual(recorder.wait(PATIENCE), -signal.SIGABRT, self.printed())

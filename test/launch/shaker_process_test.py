@@ -58,8 +58,8 @@ class ShakerProcessTest(NodeProcessTest):
         self.assertEqual(seq, samples)
 
     def test_publishes_the_signal_to_all_whom_it_waited_for(self):
-        process = self.start(sine(wait_for_subscribers=2, speed=5.0))
         first = self.subscribe()
+        process = self.start(sine(wait_for_subscribers=2, speed=5.0))
         waiting = "waiting for subscribers of " + self.namespace + "/base_excitation (1 of 2 are there)"
         self.assertTrue(wait_until(lambda: waiting in self.printed()))
         self.assertEqual(first, [])
@@ -87,15 +87,15 @@ class ShakerProcessTest(NodeProcessTest):
 
     def test_last_block_holds_what_is_left(self):
         parameters = sine(wait_for_subscribers=1, speed=10.0, block_rate=3.0)
-        process = self.start(parameters)
         blocks = self.subscribe()
+        process = self.start(parameters)
         self.expect_end(process, 0)
         self.assertTrue(wait_until(lambda: len(blocks) == 4))
         self.expect_stream(blocks, 10000, 3333, 1.0e-4)
 
     def test_stays_no_further_ahead_of_the_answers_than_told(self):
-        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1))
         blocks = self.subscribe()
+        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1))
         gap = self.advertise_answers()
         self.assertTrue(wait_until(lambda: len(blocks) == 3))
         time.sleep(0.3)
@@ -113,8 +113,8 @@ class ShakerProcessTest(NodeProcessTest):
         self.assertIn("published 10000 samples, all of them answered", self.printed())
 
     def test_a_missing_answer_ends_it(self):
-        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1))
         blocks = self.subscribe()
+        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1))
         gap = self.advertise_answers()
         self.assertTrue(wait_until(lambda: len(blocks) == 3))
         self.answer(gap, blocks[0])
@@ -123,8 +123,8 @@ class ShakerProcessTest(NodeProcessTest):
         self.assertIn("is to samples 100 to 150: must be to those from 50 on", self.printed())
 
     def test_silence_instead_of_answers_ends_it(self):
-        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1, timeout=1.0))
         self.subscribe()
+        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1, timeout=1.0))
         self.advertise_answers()
         self.expect_end(process, 1)
         self.assertIn("150 samples published, 0 answered", self.printed())
@@ -146,8 +146,8 @@ class ShakerProcessTest(NodeProcessTest):
         self.processes.append(record)
         parameters = sine(recorder="record", recorded_topics=["base_excitation"], timeout=2.0)
         parameters["signal"]["cycles"] = 1000000
-        process = self.start(parameters)
         blocks = self.subscribe()
+        process = self.start(parameters)
         self.assertTrue(wait_until(lambda: blocks))
         record.send_signal(stop)
         self.expect_end(process, 1)
@@ -160,8 +160,8 @@ class ShakerProcessTest(NodeProcessTest):
         self.expect_failure_without_recorder(signal.SIGSTOP)
 
     def expect_clean_end(self, ask):
-        process = self.start(sine(signal={"type": "sine", "acceleration": 1.0, "frequency": 1.0, "duration": 1000.0}))
         blocks = self.subscribe()
+        process = self.start(sine(signal={"type": "sine", "acceleration": 1.0, "frequency": 1.0, "duration": 1000.0}))
         self.assertTrue(wait_until(lambda: blocks))
         ask(process)
         self.expect_end(process, 0)

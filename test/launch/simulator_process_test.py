@@ -104,8 +104,8 @@ class SimulatorProcessTest(NodeProcessTest):
     def test_says_why_it_refuses_where_simulated_time_stands_still(self):
         rospy.set_param("/use_sim_time", True)
         self.addCleanup(rospy.delete_param, "/use_sim_time")
-        self.start(configuration())
         publisher = self.advertise()
+        self.start(configuration())
         self.connect(publisher)
         publisher.publish(block(0, [1.0, math.nan]))
         self.assertTrue(wait_until(lambda: "block refused: acceleration[1] is nan m/s^2" in self.printed()))
@@ -114,9 +114,9 @@ class SimulatorProcessTest(NodeProcessTest):
         parameters = configuration()
         parameters["diagnostic_period"] = 0.1
         parameters["max_input_age"] = 0.3
-        self.start(parameters)
         publisher = self.advertise()
         diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
+        self.start(parameters)
         self.connect(publisher, "/diagnostics")
         # A second between two samples: hundreds of vibrations, and most of a second of computing for all.
         message = block(0, [1.0e5 * (-1.0) ** i for i in range(1000)])
@@ -134,10 +134,10 @@ class SimulatorProcessTest(NodeProcessTest):
         parameters = configuration()
         parameters["diagnostic_period"] = 0.1
         parameters["max_input_age"] = 60.0
-        self.start(parameters)
         publisher = self.advertise()
         gaps = self.subscribe(self.namespace + "/gap", Gap)
         diagnostics = self.subscribe("/diagnostics", DiagnosticArray)
+        self.start(parameters)
         sent = 0
 
         def send():
@@ -165,10 +165,10 @@ class SimulatorProcessTest(NodeProcessTest):
 
     def expect_clean_end(self, ask):
         """The process ends by what `ask` does to it."""
-        process = self.start(configuration())
         publisher = self.advertise()
         gaps = self.subscribe(self.namespace + "/gap", Gap)
         impacts = self.subscribe(self.namespace + "/impact", Impact)
+        process = self.start(configuration())
         self.connect(publisher, "gap", "impact")
         # An acceleration that grows to a steady one presses the structures together for good.
         publisher.publish(block(0, [10.0 * (1.0 - math.exp(-0.01 * i)) for i in range(1000)]))
@@ -190,11 +190,12 @@ class SimulatorProcessTest(NodeProcessTest):
         self.assertIn("asked to end: user request", self.printed())
 
     def test_a_new_node_of_its_name_takes_over(self):
+        gaps = self.subscribe(self.namespace + "/gap", Gap)
         self.expect_clean_end(lambda process: self.start({}))
         successor = self.processes[-1]
-        publisher = self.interfaces[0]
-        gaps = self.subscribe(self.namespace + "/gap", Gap)
+        publisher = next(interface for interface in self.interfaces if isinstance(interface, rospy.Publisher))
         self.connect(publisher, "gap")
+        gaps.clear()
         publisher.publish(block(0, [0.0] * 10))
         self.assertTrue(wait_until(lambda: gaps), self.printed())
         self.assertIsNone(successor.poll())

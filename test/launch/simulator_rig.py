@@ -30,7 +30,6 @@ class SimulatorRig:
     def __init__(self, test, name_space, parameters, kind=BaseExcitation):
         """`kind` is the type of base_excitation; None: it is not published here, or not yet."""
         test.namespace = name_space
-        test.start(parameters)
         self.test = test
         self.name_space = name_space
         self.name = name_space + "/simulator"
@@ -44,6 +43,8 @@ class SimulatorRig:
         self.subscribe("/diagnostics", "diagnostics", DiagnosticArray)
         if kind:
             self.advertise(kind)
+        # Not before: what rospy registers while a node of that topic does may never hear of it.
+        test.start(parameters)
         rospy.wait_for_service(self.name + "/set_contact", PATIENCE)
         self.reset = rospy.ServiceProxy(self.name + "/reset", Trigger)
         self.set_contact = rospy.ServiceProxy(self.name + "/set_contact", SetContact)
