@@ -23,7 +23,7 @@ check_usability()
     echo "roslaunch --ros-args vibro_impact ${launch_file}"
     roslaunch --ros-args vibro_impact "${launch_file}"
   done
-  for program in converge extract_frf frf_sweep landmarks limiting_case plot_frf plot_simulation replay_contact simulate; do
+  for program in converge extract_frf frf_sweep isolated landmarks limiting_case plot_frf plot_simulation replay_check replay_contact simulate; do
     echo "rosrun vibro_impact ${program} --help"
     rosrun vibro_impact "${program}" --help
   done
@@ -42,7 +42,7 @@ check_usability()
     sleep 1
   done
   timeout 60 rostopic echo -n 1 /model_info
-  for program in simulator shaker; do
+  for program in monitor shaker simulator; do
     rosrun --prefix 'test -x' vibro_impact "${program}"
   done
 }
