@@ -16,7 +16,7 @@ constexpr std::uint32_t longest_queue = 1000000;
 constexpr std::uint32_t impact_queue = 100000;
 }  // namespace
 
-Monitor::Monitor(ros::NodeHandle node, ros::NodeHandle private_node)
+Monitor::Monitor(ros::NodeHandle node, const ros::NodeHandle& private_node)
     : diagnostics_(node, private_node, private_node.getNamespace())
 {
   XmlRpc::XmlRpcValue tree;

@@ -14,7 +14,7 @@ class Monitor
 {
 public:
   /// Reads the private parameters, which throws config::Error with all their faults, and subscribes.
-  Monitor(ros::NodeHandle node, ros::NodeHandle private_node);
+  Monitor(ros::NodeHandle node, const ros::NodeHandle& private_node);
 
 private:
   ResponseSummary summary_;
