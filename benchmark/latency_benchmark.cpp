@@ -122,9 +122,11 @@ public:
     {
       path->print(reference);
     }
-    const bool complete = relay_.count() == gap_.count() && impact_.count() > 0;
+    // A relay has queues of ten messages; what it loses is its own.
+    const auto warm_up_blocks = static_cast<std::size_t>(std::ceil(warm_up * sample_rate / block_size));
+    const bool complete = gap_.count() == blocks_ - warm_up_blocks && impact_.count() > 0;
     const bool met = gap_.quantile(0.99) <= 1.5 * reference && impact_.quantile(0.99) <= 1.5 * reference;
-    std::printf("%s; at most 1.5 asked: %s\n", complete ? "nothing lost" : "SOMETHING WAS LOST",
+    std::printf("%s; at most 1.5 asked: %s\n", complete ? "no answer lost" : "ANSWERS WERE LOST",
                 met ? "met" : "not met");
     return complete;
   }
