@@ -6,7 +6,6 @@ import os
 import re
 import resource
 import signal
-import socket
 import subprocess
 import tempfile
 import time
@@ -22,7 +21,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from roslib.packages import find_node
 from rosgraph_msgs.msg import Clock
 
-from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
+from node_process import PATIENCE, NodeProcessTest, free_port, is_connected, wait_until
 from vibro_impact.msg import BaseExcitation, Gap
 
 PACKAGE = rospkg.RosPack().get_path("vibro_impact")
@@ -63,12 +62,6 @@ def memory(process):
 def recorded(path, topic):
     with rosbag.Bag(path) as bag:
         return [record.message for record in bag.read_messages() if record.topic.split("/")[-1] == topic]
-
-
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
 
 
 class FaultsTest(NodeProcessTest):

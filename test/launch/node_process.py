@@ -1,5 +1,6 @@
 """A node as a process of its own, for the tests of how it starts, what it says and how it ends."""
 
+import socket
 import subprocess
 import tempfile
 import time
@@ -12,6 +13,13 @@ from roslib.packages import find_node
 
 # Longer than anything takes on a busy machine, s.
 PATIENCE = 30.0
+
+
+def free_port():
+    """A port of 127.0.0.1 that nobody listens on."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
 
 
 def wait_until(condition):

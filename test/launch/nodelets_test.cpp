@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,29 +14,16 @@
 #include <vibro_impact/BaseExcitation.h>
 #include <vibro_impact/Gap.h>
 #include <vibro_impact/Impact.h>
+
+#include "spin_until.h"
+
+using vibro_impact::spinUntil;
 #include <boost/make_shared.hpp>
 
 namespace
 {
 constexpr double period = 2.0e-5;
 constexpr std::size_t block_size = 250;
-/// Longer than anything takes on a busy machine, s.
-constexpr double patience = 30.0;
-
-bool spinUntil(const std::function<bool()>& condition)
-{
-  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(patience);
-  while (!condition())
-  {
-    if (!ros::ok() || ros::WallTime::now() > end)
-    {
-      return false;
-    }
-    ros::spinOnce();
-    ros::WallDuration(0.001).sleep();
-  }
-  return true;
-}
 
 /// Near the resonance: an impact in every cycle of 115 samples.
 vibro_impact::BaseExcitationPtr block(std::uint64_t seq)

@@ -14,17 +14,13 @@ import unittest
 import rostest
 from roslib.packages import find_node
 
+from node_process import free_port
+
 PATIENCE = 30.0
 LAUNCH_FILE = str(pathlib.Path(__file__).resolve().parents[2] / "launch" / "simulator.launch")
 LOOPBACK = "0100007F"  # 127.0.0.1 as /proc/net/tcp writes it
 ANY = "00000000"
 LISTENING = "0A"
-
-
-def free_port():
-    with socket.socket() as listener:
-        listener.bind(("127.0.0.1", 0))
-        return listener.getsockname()[1]
 
 
 def listening_addresses(process):

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -26,6 +25,7 @@
 #include <vibro_impact/SetContact.h>
 #include <vibro_impact/StreamStart.h>
 
+#include "spin_until.h"
 #include "vibro_impact/config/configuration.h"
 #include "vibro_impact/core/switched_model.h"
 #include "vibro_impact/ros/contact_history.h"
@@ -37,6 +37,8 @@ namespace core = vibro_impact::core;
 namespace graph = vibro_impact::graph;
 using graph::Samples;
 using graph::Stamp;
+using vibro_impact::patience;
+using vibro_impact::spinUntil;
 using Action = graph::Verdict::Action;
 
 namespace
@@ -44,8 +46,6 @@ namespace
 constexpr double period = 2.0e-5;
 constexpr Stamp nanoseconds = 20000;  // of a period
 constexpr std::size_t block_size = 250;
-/// Longer than anything takes on a busy machine, s.
-constexpr double patience = 30.0;
 
 core::SystemParameters configuration()
 {
@@ -85,21 +85,6 @@ public:
                             [this](const ros::Subscriber& subscriber)
                             { return graph::isConnected(query_, subscriber.getTopic(), ros::this_node::getName()); });
                });
-  }
-
-  bool spinUntil(const std::function<bool()>& condition)
-  {
-    const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(patience);
-    while (!condition())
-    {
-      if (!ros::ok() || ros::WallTime::now() > end)
-      {
-        return false;
-      }
-      ros::spinOnce();
-      ros::WallDuration(0.001).sleep();
-    }
-    return true;
   }
 
   void send(const Samples& samples)
@@ -241,7 +226,7 @@ protected:
     const std::size_t impacts = client_->impacts.size();
     if (client_->reset().message.find("cut short") != std::string::npos)
     {
-      ASSERT_TRUE(client_->spinUntil([impacts] { return client_->impacts.size() > impacts; }));
+      ASSERT_TRUE(spinUntil([impacts] { return client_->impacts.size() > impacts; }));
     }
     reference_ = std::make_unique<graph::StreamSimulation>(model_, graph::StreamLimits{});
     expected_gaps_.clear();
@@ -290,7 +275,7 @@ protected:
   /// All that was to come has come, and nothing but that.
   void expectAnswers()
   {
-    ASSERT_TRUE(client_->spinUntil(
+    ASSERT_TRUE(spinUntil(
         [this]
         {
           return client_->gaps.size() >= expected_gaps_.size() && client_->forces.size() >= expected_forces_.size() &&
@@ -400,7 +385,7 @@ TEST_F(SimulatorTest, modelInfoIsLatchedAndLoadsBack)
   vibro_impact::ModelInfoConstPtr info;
   const ros::Subscriber late = node.subscribe<vibro_impact::ModelInfo>(
       "model_info", 1, [&info](const vibro_impact::ModelInfoConstPtr& message) { info = message; });
-  ASSERT_TRUE(client_->spinUntil([&info] { return info != nullptr; }));
+  ASSERT_TRUE(spinUntil([&info] { return info != nullptr; }));
   EXPECT_TRUE(info->header.stamp.isZero());
   EXPECT_FALSE(info->version.empty());
   EXPECT_EQ(vibro_impact::config::toYaml(graph::fromMessage(*info)), vibro_impact::config::toYaml(configuration()));
@@ -446,7 +431,7 @@ TEST_F(SimulatorTest, refusesBadBlocksWholeAndCountsThem)
   }
   sendStream(5000, 10000);
   expectAnswers();
-  EXPECT_TRUE(client_->spinUntil([&] { return client_->count("Blocks refused") == before + 9; }));
+  EXPECT_TRUE(spinUntil([&] { return client_->count("Blocks refused") == before + 9; }));
   EXPECT_TRUE(std::any_of(client_->complaints.begin(), client_->complaints.end(),
                           [](const std::string& complaint)
                           { return complaint.find("block refused: ") != std::string::npos; }));
@@ -462,7 +447,7 @@ TEST_F(SimulatorTest, bridgesMissingSamplesAndCountsThem)
   EXPECT_EQ(send(block(5600)), Action::Bridge);
   sendStream(5850, 10000);
   expectAnswers();
-  EXPECT_TRUE(client_->spinUntil([&] { return client_->count("Samples bridged") == samples + 600; }));
+  EXPECT_TRUE(spinUntil([&] { return client_->count("Samples bridged") == samples + 600; }));
   EXPECT_EQ(client_->count("Blocks lost"), blocks + 3);
   EXPECT_TRUE(std::any_of(client_->complaints.begin(), client_->complaints.end(),
                           [](const std::string& complaint)
@@ -491,14 +476,14 @@ TEST_F(SimulatorTest, restartsFromRestWhereTheStreamBreaks)
   slower.sample_period = 2.0 * period;
   EXPECT_EQ(send(slower), Action::Restart) << "a new period";
   expectAnswers();
-  EXPECT_TRUE(client_->spinUntil([&] { return client_->count("Restarts") == before + 4; }));
+  EXPECT_TRUE(spinUntil([&] { return client_->count("Restarts") == before + 4; }));
 }
 
 TEST_F(SimulatorTest, mirrorsHoldTheExtremes)
 {
   sendStream(0, 50000);  // 1 s, so that each mirror sends 50
   expectAnswers();
-  ASSERT_TRUE(client_->spinUntil([] { return client_->wrenches.size() >= 50 && client_->gaps_now.size() >= 50; }));
+  ASSERT_TRUE(spinUntil([] { return client_->wrenches.size() >= 50 && client_->gaps_now.size() >= 50; }));
   EXPECT_EQ(client_->wrenches.size(), 50u);
   double greatest = 0.0;
   for (const Samples& block : expected_forces_)
@@ -532,10 +517,10 @@ TEST_F(SimulatorTest, diagnosticsCountWhatIsDoneAndSilenceIsStale)
   const std::int64_t blocks = client_->count("Blocks accepted");
   sendStream(0, 50000);
   expectAnswers();
-  EXPECT_TRUE(client_->spinUntil([&] { return client_->count("Blocks accepted") == blocks + 200; }));
+  EXPECT_TRUE(spinUntil([&] { return client_->count("Blocks accepted") == blocks + 200; }));
   EXPECT_EQ(client_->count("Impacts"), impacts + static_cast<std::int64_t>(expected_impacts_.size()));
   EXPECT_GT(std::stod(client_->values.at("Real-time factor")), 1.0);
-  EXPECT_TRUE(client_->spinUntil(
+  EXPECT_TRUE(spinUntil(
       []
       {
         return client_->level == diagnostic_msgs::DiagnosticStatus::STALE &&
@@ -561,7 +546,7 @@ TEST_F(SimulatorTest, aPauseCutsTheOpenImpactShortAndDiscardsBlocks)
   {
     client_->send(block(seq));
   }
-  ASSERT_TRUE(client_->spinUntil(
+  ASSERT_TRUE(spinUntil(
       [&] { return client_->count("Samples discarded") == discarded + static_cast<std::int64_t>(10 * block_size); }));
   EXPECT_NE(client_->summary.find("paused: blocks are discarded"), std::string::npos) << client_->summary;
   EXPECT_EQ(client_->pause(false).message, "goes on from rest with the next block");
@@ -569,7 +554,7 @@ TEST_F(SimulatorTest, aPauseCutsTheOpenImpactShortAndDiscardsBlocks)
   const std::uint64_t next = open + 10 * block_size;
   sendStream(next, next + 5000);
   expectAnswers();
-  ASSERT_TRUE(client_->spinUntil([] { return client_->starts.size() == 2; }));
+  ASSERT_TRUE(spinUntil([] { return client_->starts.size() == 2; }));
   EXPECT_EQ(client_->starts.front().seq, 0u);
   EXPECT_EQ(client_->starts.front().reason, "reset");
   EXPECT_EQ(client_->starts.back().seq, next);
@@ -608,7 +593,7 @@ struct Replay : graph::RecordingSink
 
 TEST_F(SimulatorTest, aRecordedChangeOfTheContactIsComputedAgainOffline)
 {
-  ASSERT_TRUE(client_->spinUntil([] { return !client_->infos.empty(); }));
+  ASSERT_TRUE(spinUntil([] { return !client_->infos.empty(); }));
   const core::SystemParameters parameters = configuration();
   const core::ContactParameters contact = parameters.contact;
   const auto change = [&](const core::ContactParameters& to, std::uint64_t seq)
@@ -626,7 +611,7 @@ TEST_F(SimulatorTest, aRecordedChangeOfTheContactIsComputedAgainOffline)
   sendStream(12000, 20000);
   expectAnswers();
   ASSERT_GT(expected_impacts_.size(), 100u);
-  ASSERT_TRUE(client_->spinUntil([] { return client_->infos.size() == 4; }));
+  ASSERT_TRUE(spinUntil([] { return client_->infos.size() == 4; }));
   EXPECT_EQ(client_->infos[1].seq, 5123u);
   EXPECT_EQ(client_->infos[1].header.stamp, graph::toTime(begin_ + 5123 * nanoseconds));
   EXPECT_EQ(client_->infos[3].seq, 12000u);
