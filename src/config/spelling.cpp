@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace vibro_impact::config
 {
@@ -10,22 +11,28 @@ namespace
 // The least number of inserted, deleted, replaced or swapped neighbouring characters that turns `a` into `b`.
 std::size_t editDistance(const std::string& a, const std::string& b)
 {
-  std::vector<std::vector<std::size_t>> distance(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  std::iota(distance[0].begin(), distance[0].end(), std::size_t{0});
+  // Rows of the table of all beginnings of `a` against all beginnings of `b`: that of i characters of `a`, and the two
+  // before it.
+  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> above(b.size() + 1);
+  std::vector<std::size_t> two_above(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= a.size(); ++i)
   {
-    distance[i][0] = i;
+    std::swap(two_above, above);
+    std::swap(above, row);
+    row[0] = i;
     for (std::size_t j = 1; j <= b.size(); ++j)
     {
-      const std::size_t replaced = distance[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-      distance[i][j] = std::min({distance[i - 1][j] + 1, distance[i][j - 1] + 1, replaced});
+      const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
       if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
       {
-        distance[i][j] = std::min(distance[i][j], distance[i - 2][j - 2] + 1);
+        row[j] = std::min(row[j], two_above[j - 2] + 1);
       }
     }
   }
-  return distance[a.size()][b.size()];
+  return row.back();
 }
 
 std::string lowerCase(std::string text)
