@@ -48,10 +48,10 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   gap_.advertise<Gap>(node, "gap", queue_size);
   force_.advertise<ContactForce>(node, "contact_force", queue_size);
   impact_.advertise<Impact>(node, "impact", impact_queue);
-  stream_start_.advertise<StreamStart>(node, "stream_start", queue_size);
   wrench_publisher_ = node.advertise<geometry_msgs::WrenchStamped>("contact_wrench", mirror_queue);
   gap_now_publisher_ = node.advertise<std_msgs::Float64>("gap_now", mirror_queue);
   model_info_publisher_ = node.advertise<ModelInfo>("model_info", StreamSimulation::max_waiting_changes, true);
+  stream_start_publisher_ = node.advertise<StreamStart>("stream_start", queue_size, true);
 
   addDiagnostics();
   diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
@@ -86,7 +86,7 @@ void Simulator::addDiagnostics()
 
 std::vector<const OutputQueue*> Simulator::queues() const
 {
-  std::vector<const OutputQueue*> queues = {&gap_, &force_, &impact_, &stream_start_};
+  std::vector<const OutputQueue*> queues = {&gap_, &force_, &impact_};
   if (parameters_.input.kind != InputKind::block)
   {
     queues.push_back(&excitation_used_);
@@ -250,13 +250,14 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
 void Simulator::publishStart(const StreamSimulation::Answer& answer)
 {
   const bool restarted = answer.verdict.action == Verdict::Action::Restart;
-  const auto start = boost::make_shared<StreamStart>();
-  start->header.stamp = toTime(answer.gap.stamp);
-  start->header.frame_id = base_frame;
-  start->seq = answer.gap.seq;
-  start->sample_period = answer.gap.sample_period;
-  start->reason = restarted ? answer.verdict.reason : start_reason_;
-  stream_start_.publish<StreamStart>(start);
+  StreamStart start;
+  start.header.stamp = toTime(answer.gap.stamp);
+  start.header.frame_id = base_frame;
+  start.seq = answer.gap.seq;
+  start.sample_period = answer.gap.sample_period;
+  start.number = starts_++;
+  start.reason = restarted ? answer.verdict.reason : start_reason_;
+  stream_start_publisher_.publish(start);
 }
 
 void Simulator::publishModelInfo(const core::SwitchedModel& model, std::uint64_t seq, const ros::Time& stamp)

@@ -72,6 +72,7 @@ class ControlTest(NodeProcessTest):
         starts = rig.messages["stream_start"]
         numbers = [impact.number for impact in rig.messages["impact"]]
         self.assertEqual(starts[0].seq, rig.messages["gap"][0].seq)
+        self.assertEqual([start.number for start in starts], list(range(len(starts))))
         self.assertTrue({start.reason for start in starts} <= {"first block", "reset", "paused until then"}, starts)
         self.assertTrue(all(b in (0, a + 1) for a, b in zip(numbers, numbers[1:])), numbers)
         cut_short = sum(impact.cut_short for impact in rig.messages["impact"])

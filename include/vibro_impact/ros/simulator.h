@@ -65,6 +65,7 @@ private:
   ExtremesHold extremes_;
   bool paused_ = false;
   std::string start_reason_ = "first block";
+  std::uint64_t starts_ = 0;
   LogThrottle refusals_;
   LogThrottle bridges_;
   LogThrottle restarts_;
@@ -75,8 +76,8 @@ private:
   OutputQueue gap_;
   OutputQueue force_;
   OutputQueue impact_;
-  OutputQueue stream_start_;
   ros::Publisher model_info_publisher_;
+  ros::Publisher stream_start_publisher_;
   ros::Publisher wrench_publisher_;
   ros::Publisher gap_now_publisher_;
   InputStatistics input_statistics_;
