@@ -130,6 +130,16 @@ std::vector<std::size_t> RecordedAnswers::match(const std::vector<Placed>& quest
       by(by_stamp, stamp, head.stamp, i, [](const BlockHead&) { return true; });
     }
   }
+  // Of a block that comes twice in succession the first is taken.
+  for (std::size_t& question : result)
+  {
+    while (question != none && question > 0 && !answered[question - 1] && number(question - 1) == number(question) &&
+           stamp(question - 1) == stamp(question))
+    {
+      answered[question] = false;
+      answered[--question] = true;
+    }
+  }
   return result;
 }
 

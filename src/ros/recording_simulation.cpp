@@ -9,7 +9,6 @@
 #include "contact_replay.h"
 #include "text.h"
 #include "vibro_impact/config/error.h"
-#include "vibro_impact/ros/contact_history.h"
 #include "vibro_impact/ros/conversions.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
@@ -78,39 +77,6 @@ void note(const Verdict& verdict, RecordingSimulation& result)
 }
 
 }  // namespace
-
-RecordedModel recordedModel(const RecordedRun& recording)
-{
-  const std::string& topic = recording.topics().model_info;
-  ContactHistory history(topic);
-  RecordedModel model;
-  std::optional<std::uint64_t> last;
-  recording.readModelInfo(
-      [&](const ModelInfo& info)
-      {
-        history.add(info);
-        if (!last)
-        {
-          model.parameters = fromMessage(info);
-          model.known_from = {info.seq, fromTime(info.header.stamp), model.parameters.contact};
-        }
-        else if (info.number > *last + 1)
-        {
-          throw config::Error(text("topic ", topic, ": number ", *last + 1,
-                                   " is missing: the recording has lost a change of the contact"));
-        }
-        else if (info.number > *last)
-        {
-          model.changes.push_back({info.seq, fromTime(info.header.stamp), fromMessage(info).contact});
-        }
-        last = info.number;
-      });
-  if (!last)
-  {
-    throw config::Error("the recording holds no model_info: give a configuration as CONFIG");
-  }
-  return model;
-}
 
 RecordingSimulation simulateRecording(const RecordedRun& recording, const RecordedModel& recorded,
                                       const StreamLimits& limits, const config::HistorySelection& history,

@@ -2,22 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <deque>
-#include <limits>
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "contact_replay.h"
 #include "recorded_answers.h"
+#include "recorded_simulators.h"
+#include "replay_comparison.h"
 #include "text.h"
-#include "vibro_impact/config/configuration.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/ros/conversions.h"
-#include "vibro_impact/ros/recording_simulation.h"
 #include "vibro_impact/ros/stream_simulation.h"
 
 namespace vibro_impact::graph
@@ -25,170 +24,15 @@ namespace vibro_impact::graph
 namespace
 {
 constexpr std::size_t none = RecordedAnswers::none;
-// Blocks without an answer that are tried as the start of a simulator whose first answers are not recorded.
-constexpr std::size_t most_tried = 400;
 // Share of the first of the two readings in the progress.
 constexpr double first_reading = 0.2;
 
-std::string digits(double value)
+/// A block of excitation, and its place in the recording.
+struct Block
 {
-  std::ostringstream stream;
-  stream.precision(17);
-  stream << value;
-  return stream.str();
-}
-
-std::string digits(std::uint64_t value)
-{
-  return std::to_string(value);
-}
-
-std::string digits(bool value)
-{
-  return value ? "true" : "false";
-}
-
-std::string digits(const ros::Time& value)
-{
-  return text(value);
-}
-
-std::uint64_t bits(double value)
-{
-  std::uint64_t result = 0;
-  std::memcpy(&result, &value, sizeof result);
-  return result;
-}
-
-bool identical(double a, double b)
-{
-  return bits(a) == bits(b);  // also tells zeros and NaNs apart
-}
-
-template <typename Value>
-bool identical(const Value& a, const Value& b)
-{
-  return a == b;
-}
-
-template <typename Value>
-std::optional<ReplayDifference> compare(const std::string& topic, const std::string& place, const std::string& field,
-                                        const Value& recorded, const Value& recomputed)
-{
-  if (identical(recorded, recomputed))
-  {
-    return std::nullopt;
-  }
-  return ReplayDifference{topic, place, field, digits(recorded), digits(recomputed)};
-}
-
-std::optional<ReplayDifference> compare(const std::string& topic, const std::string& field, const Samples& recorded,
-                                        const Samples& recomputed)
-{
-  const std::string block = text("block of seq ", recorded.seq);
-  auto difference = compare(topic, block, "seq", recorded.seq, recomputed.seq);
-  difference =
-      difference ? difference : compare(topic, block, "header.stamp", toTime(recorded.stamp), toTime(recomputed.stamp));
-  difference = difference ? difference
-                          : compare(topic, block, "sample_period", recorded.sample_period, recomputed.sample_period);
-  difference = difference ? difference
-                          : compare(topic, block, "number of samples", std::uint64_t{recorded.values.size()},
-                                    std::uint64_t{recomputed.values.size()});
-  for (std::size_t i = 0; i < recorded.values.size() && !difference; ++i)
-  {
-    if (!identical(recorded.values[i], recomputed.values[i]))
-    {
-      difference = compare(topic, text(block, ", sample ", recorded.seq + i), text(field, "[", i, "]"),
-                           recorded.values[i], recomputed.values[i]);
-    }
-  }
-  return difference;
-}
-
-std::optional<ReplayDifference> compare(const std::string& topic, const Impact& recorded, const Impact& recomputed)
-{
-  const std::string place = text("number ", recorded.number, " (seq ", recorded.seq, ")");
-  std::optional<ReplayDifference> difference;
-  const auto field = [&](const char* name, const auto& a, const auto& b)
-  {
-    if (!difference)
-    {
-      difference = compare(topic, place, name, a, b);
-    }
-  };
-  field("number", recorded.number, recomputed.number);
-  field("seq", recorded.seq, recomputed.seq);
-  field("offset", recorded.offset, recomputed.offset);
-  field("header.stamp", recorded.header.stamp, recomputed.header.stamp);
-  field("duration", recorded.duration, recomputed.duration);
-  field("impulse", recorded.impulse, recomputed.impulse);
-  field("peak_force", recorded.peak_force, recomputed.peak_force);
-  field("peak_time", recorded.peak_time, recomputed.peak_time);
-  field("approach_speed", recorded.approach_speed, recomputed.approach_speed);
-  field("separation_speed", recorded.separation_speed, recomputed.separation_speed);
-  field("energy_lost", recorded.energy_lost, recomputed.energy_lost);
-  field("cut_short", recorded.cut_short != 0, recomputed.cut_short != 0);
-  field("dissipated", recorded.dissipated, recomputed.dissipated);
-  field("mapping_loss", recorded.mapping_loss, recomputed.mapping_loss);
-  field("base_work", recorded.base_work, recomputed.base_work);
-  return difference;
-}
-
-/// One simulator's model in the course of a recording.
-struct Epoch
-{
-  RecordedModel model;
-  std::uint64_t first_number = 0;                // of its first model_info
-  std::map<std::size_t, std::uint64_t> missing;  // before which change which number is missing
+  std::size_t index = 0;
+  Samples samples;
 };
-
-/// A simulator that is started anew tells its model anew.
-std::vector<Epoch> epochs(const RecordedRun& recording)
-{
-  const std::string& topic = recording.topics().model_info;
-  std::vector<Epoch> result;
-  std::optional<std::uint64_t> last;
-  std::string last_configuration;
-  recording.readModelInfo(
-      [&](const ModelInfo& info)
-      {
-        // Written out anew, for the text may be another one for the same parameters.
-        const core::SystemParameters parameters = fromMessage(info);
-        const std::string configuration = config::toYaml(parameters);
-        if (last && info.number == *last && configuration == last_configuration)
-        {
-          return;
-        }
-        const RecordedChange dated{info.seq, fromTime(info.header.stamp), parameters.contact};
-        if (!last || info.number <= *last)
-        {
-          result.push_back({{parameters, {}, dated}, info.number, {}});
-        }
-        else
-        {
-          Epoch& epoch = result.back();
-          core::SystemParameters same = epoch.model.parameters;
-          same.contact = parameters.contact;
-          if (config::toYaml(same) != configuration)
-          {
-            throw config::Error(text("topic ", topic, ", number ", info.number,
-                                     ": is another model than the one before, not another contact"));
-          }
-          if (info.number > *last + 1)
-          {
-            epoch.missing.emplace(epoch.model.changes.size(), *last + 1);
-          }
-          epoch.model.changes.push_back(dated);
-        }
-        last = info.number;
-        last_configuration = configuration;
-      });
-  if (result.empty())
-  {
-    throw config::Error("topic " + topic + ": holds no message");
-  }
-  return result;
-}
 
 /// The recorded answers to a block.
 struct Answers
@@ -207,219 +51,110 @@ struct Step
   std::uint64_t contact_changes = 0;
 };
 
-/// A simulator to be, with all that it was told.
-struct Player
+/// What a simulator may have had, and what it made of it. Of a block without a recorded answer either the recording has
+/// lost the answer, or the simulator never had the block; and a start from rest may be another simulator's.
+struct Account
 {
   StreamSimulation simulation;
   ContactReplay contact;
-  std::size_t epoch;
+  std::size_t simulator = 0;  // which of the recording's
+  std::vector<Step> steps;    // since the last block with an answer
+  std::size_t skipped = 0;    // blocks since then that it never had
+  bool skips = false;         // has not had the last one
 };
 
-/// A block of excitation, and its place in the recording.
-struct Block
-{
-  std::size_t index = 0;
-  Samples samples;
-};
-
-/// Puts the impacts of both sides together, whichever comes first.
-class ImpactComparison
+/// Where the simulators have started from rest, by their own account.
+class RecordedStarts
 {
 public:
-  explicit ImpactComparison(std::string topic) : topic_(std::move(topic))
+  explicit RecordedStarts(const RecordedRun& recording)
   {
+    std::optional<StreamStart> last;
+    std::size_t simulator = 0;
+    recording.readStreamStart(
+        [&](const StreamStart& start)
+        {
+          const bool is_repetition = last && start.number == last->number && start.seq == last->seq &&
+                                     start.header.stamp == last->header.stamp;
+          if (is_repetition)
+          {
+            return;
+          }
+          simulator += last && start.number <= last->number ? 1 : 0;
+          simulators_[{fromTime(start.header.stamp), start.seq}].push_back(simulator);
+          last = start;
+        });
   }
 
-  /// `block`: that of the release. `required`: it must be in the recording.
-  void addRecomputed(std::uint64_t run, const StampedImpact& impact, std::size_t block, bool required)
+  /// Which of the simulators starts with this block. Each start is told once: another block with its number and time is
+  /// a repetition, or that of the next loop.
+  std::optional<std::size_t> take(const Samples& block)
   {
-    Entry entry;
-    toMessage(impact, entry.impact);
-    entry.block = block;
-    entry.required = required;
-    meet(run, entry, recomputed_, recorded_);
-  }
-
-  /// `block`: that of the onset.
-  void addRecorded(std::uint64_t run, const Impact& impact, std::size_t block)
-  {
-    meet(run, {impact, block, true}, recorded_, recomputed_);
-  }
-
-  /// Where the motion of this run began is only inferred from what came later. A motion may forget its beginning to the
-  /// last bit; the numbers of its impacts do not.
-  void doubt(std::uint64_t run)
-  {
-    doubtful_.insert(run);
-  }
-
-  /// A run that the number of an impact has shown to have begun elsewhere, once; 0: none.
-  std::uint64_t takeRefuted()
-  {
-    return std::exchange(refuted_now_, 0);
-  }
-
-  /// What has found no counterpart. `judged(run, impact, block)`: whether the end of a recorded impact was recomputed.
-  template <typename Judged>
-  void finish(ReplayReport& report, const Judged& judged)
-  {
-    for (const auto& [key, entry] : recorded_)
+    const auto found = simulators_.find({block.stamp, block.seq});
+    if (found == simulators_.end() || found->second.empty())
     {
-      const std::uint64_t run = std::get<0>(key);
-      if (doubtful_.count(run) != 0 || !judged(run, entry.impact, entry.block))
-      {
-        ++report.impacts_not_compared;
-        continue;
-      }
-      const auto same = std::find_if(recomputed_.begin(), recomputed_.end(),
-                                     [&, of = run, number = entry.impact.number](const auto& other) {
-                                       return std::get<0>(other.first) == of && other.second.impact.number == number;
-                                     });
-      if (same != recomputed_.end())
-      {
-        note(compare(topic_, entry.impact, same->second.impact), entry.block);
-        recomputed_.erase(same);
-      }
-      else
-      {
-        note(ReplayDifference{topic_, text("number ", entry.impact.number, " (seq ", entry.impact.seq, ")"), "number",
-                              digits(entry.impact.number), "no such impact"},
-             entry.block);
-      }
+      return std::nullopt;
     }
-    noteMissing(report);
-    report.impacts = identical_;
-    report.impacts_not_compared += not_compared_;
-  }
-
-  const std::optional<ReplayDifference>& difference() const
-  {
-    return difference_;
-  }
-  std::size_t differenceBlock() const
-  {
-    return difference_block_;
+    const std::size_t simulator = found->second.front();
+    found->second.pop_front();
+    return simulator;
   }
 
 private:
-  struct Entry
-  {
-    Impact impact;
-    std::size_t block = 0;
-    bool required = true;
-  };
-  using Key = std::tuple<std::uint64_t, std::uint64_t, double>;  // run, seq, offset
-  using Entries = std::multimap<Key, Entry>;
+  std::map<std::pair<Stamp, std::uint64_t>, std::deque<std::size_t>> simulators_;
+};
 
-  void meet(std::uint64_t run, const Entry& entry, Entries& own, Entries& others)
+/// The blocks whose answers are missing on a topic, in stretches.
+class MissingAnswers
+{
+public:
+  explicit MissingAnswers(std::string topic) : topic_(std::move(topic))
   {
-    const bool is_recorded = &own == &recorded_;
-    if (refuted_.count(run) != 0)
-    {
-      not_compared_ += is_recorded ? 1 : 0;
-      return;
-    }
-    const Key key{run, entry.impact.seq, entry.impact.offset};
-    const auto other = others.find(key);
-    if (other == others.end())
-    {
-      own.emplace(key, entry);
-      return;
-    }
-    if (doubtful_.erase(run) != 0 && other->second.impact.number != entry.impact.number)
-    {
-      not_compared_ += is_recorded ? 1 : 0;
-      refute(run);
-      return;
-    }
-    const auto found = is_recorded ? compare(topic_, entry.impact, other->second.impact)
-                                   : compare(topic_, other->second.impact, entry.impact);
-    identical_ += found ? 0 : 1;
-    note(found, is_recorded ? entry.block : other->second.block);
-    others.erase(other);
   }
 
-  void refute(std::uint64_t run)
+  void add(const BlockHead& block, std::vector<Loss>& losses)
   {
-    refuted_.insert(run);
-    refuted_now_ = run;
-    const auto drop = [run](Entries& entries)
+    if (blocks_ > 0 && stretch_.last != block.seq)
     {
-      constexpr double before = -std::numeric_limits<double>::infinity();
-      const auto first = entries.lower_bound(Key{run, 0, before});
-      const auto last = entries.lower_bound(Key{run + 1, 0, before});
-      const auto count = static_cast<std::uint64_t>(std::distance(first, last));
-      entries.erase(first, last);
-      return count;
-    };
-    not_compared_ += drop(recorded_);
-    drop(recomputed_);
-  }
-
-  void note(const std::optional<ReplayDifference>& found, std::size_t block)
-  {
-    if (found && (!difference_ || block < difference_block_))
-    {
-      difference_ = found;
-      difference_block_ = block;
+      flush(losses);
     }
+    stretch_.first = blocks_ == 0 ? block.seq : stretch_.first;
+    stretch_.last = block.end();
+    ++blocks_;
   }
 
-  void noteMissing(ReplayReport& report) const
+  void flush(std::vector<Loss>& losses)
   {
-    const Entry* first = nullptr;
-    const Entry* last = nullptr;
-    std::uint64_t count = 0;
-    const auto flush = [&]
+    if (blocks_ > 0)
     {
-      if (count > 0)
-      {
-        report.losses.push_back({first->impact.seq, last->impact.seq + 1,
-                                 text("topic ", topic_, ": number ", first->impact.number, " to ", last->impact.number,
-                                      " (", count, count == 1 ? " impact" : " impacts", ", seq ", first->impact.seq,
-                                      " to ", last->impact.seq, ") is missing")});
-      }
-      count = 0;
-    };
-    for (const auto& [key, entry] : recomputed_)
-    {
-      if (!entry.required)
-      {
-        continue;
-      }
-      if (count > 0 && entry.impact.number != last->impact.number + 1)
-      {
-        flush();
-      }
-      first = count == 0 ? &entry : first;
-      last = &entry;
-      ++count;
+      stretch_.reason = text("topic ", topic_, ": seq ", stretch_.first, " to ", stretch_.last - 1, " (", blocks_,
+                             blocks_ == 1 ? " block" : " blocks", ") is missing");
+      losses.push_back(stretch_);
     }
-    flush();
+    blocks_ = 0;
   }
 
+private:
   std::string topic_;
-  Entries recorded_, recomputed_;
-  std::uint64_t identical_ = 0;
-  std::uint64_t not_compared_ = 0;
-  std::set<std::uint64_t> doubtful_, refuted_;
-  std::uint64_t refuted_now_ = 0;
-  std::optional<ReplayDifference> difference_;
-  std::size_t difference_block_ = 0;
+  Loss stretch_;
+  std::uint64_t blocks_ = 0;
 };
 
 class Replay : public RecordingSink
 {
 public:
-  Replay(const RecordedTopics& topics, const RecordedAnswers& answers, std::vector<Epoch> epochs,
-         const StreamLimits& limits)
+  Replay(const RecordedTopics& topics, const RecordedAnswers& answers, std::vector<RecordedSimulator> simulators,
+         RecordedStarts starts, const StreamLimits& limits)
       : topics_(topics),
         answers_(answers),
-        epochs_(std::move(epochs)),
+        simulators_(std::move(simulators)),
+        starts_(std::move(starts)),
         limits_(limits),
         impacts_(topics.impact.empty() ? "impact" : topics.impact),
+        missing_gaps_(topics.gap),
+        missing_forces_(topics.contact_force),
         run_of_(answers.excitation().size(), 0),
-        contact_(epochs_.front().model)
+        contact_(simulators_.front().model)
   {
     report_.losses = answers.unasked();
   }
@@ -448,7 +183,6 @@ public:
     const std::size_t block = answers_.blockOf(impact.seq, impact.header.stamp, hint);
     unplaced_.emplace_back(block == none ? hint : block, impact);
     placeImpacts();
-    dropRefuted();
   }
 
   void onModelInfo(const ModelInfo& /*info*/) override
@@ -470,71 +204,65 @@ private:
 
   void judgeWhatIsComplete();
   void judge(const Block& block, const Answers& recorded);
-  void leaveUnanswered(Block block);
-  void settleUnanswered();
-  bool follow(const Block& block, const Answers& recorded, std::optional<ReplayDifference>& difference);
-  bool startAnew(const Block& block, const Answers& recorded, std::optional<ReplayDifference>& difference);
-  std::string doubt(const Block& block) const;
-  void loseTrack(const Block& block, const std::string& reason);
+  void leaveUnanswered(const Block& block, bool is_start);
+  bool settleUnanswered();
 
-  const StreamSimulation::Answer& feed(Player& player, const Block& block);
-  std::optional<ReplayDifference> attempt(Player& player, std::size_t unanswered, const Block& block,
-                                          const Answers& recorded);
-  StreamSimulation atRest(std::size_t epoch, const core::ContactParameters& contact);
-  void adopt(const Block& block, const Answers& recorded);
-  void placeImpacts();
-  void dropRefuted();
-  void noteMissing(const std::string& topic, const Block& block);
-  void flushMissing(const std::string& topic);
+  std::optional<std::size_t> startOf(const Block& block);
+  void startAnew(const Block& block, std::size_t simulator);
+  void leaveMotion(std::size_t next_block);
+  void endMotion(std::size_t next_block, bool is_known);
+  Account atRest(std::size_t simulator, const ContactReplay& contact);
+  Verdict::Action feed(Account& account, const Block& block, const StreamSimulation::Answer** answer = nullptr);
+  Account* firstThatFits(std::vector<Account>& accounts, const Block& block, const Answers& recorded,
+                         std::optional<ReplayDifference>& difference);
+  void adopt(Account account, const Block& block, const Answers& recorded);
+  void adopt(const Step& step);
+
+  std::string doubt(const Block& block) const;
+  std::string missingBefore(const Block& block) const;
+  void loseTrack(const Block& block, const std::string& reason);
   void closeLoss();
-  std::shared_ptr<const core::SwitchedModel> model(std::size_t epoch, const core::ContactParameters& contact);
+
+  void placeImpacts();
+  void noteMissing(std::size_t block, bool gap, bool force);
+  std::shared_ptr<const core::SwitchedModel> model(std::size_t simulator, const core::ContactParameters& contact);
 
   RecordedTopics topics_;
   const RecordedAnswers& answers_;
-  std::vector<Epoch> epochs_;
+  std::vector<RecordedSimulator> simulators_;
+  RecordedStarts starts_;
   StreamLimits limits_;
   ReplayReport report_;
   ImpactComparison impacts_;
+  MissingAnswers missing_gaps_, missing_forces_;
 
   std::size_t read_ = 0, gaps_ = 0, forces_ = 0;
   std::deque<Block> waiting_;  // for their answers
   std::map<std::size_t, Answers> recorded_;
   std::vector<std::pair<std::size_t, Impact>> unplaced_;  // by the block of their onset
 
-  std::optional<Player> player_;            // nothing: the motion is not known
-  std::optional<StreamSimulation> before_;  // the block that is judged: with an episode open
-  std::vector<Step> steps_;                 // of the last attempt
-  std::deque<Block> unanswered_;            // since the last answered block
-  bool forgotten_ = false;                  // there were more of them
-  std::uint64_t run_ = 0;                   // from rest to rest; 0: none
-  std::vector<std::uint64_t> run_of_;       // by block; 0: not recomputed
-  std::set<std::uint64_t> open_runs_;       // whose end is not known
-  struct Inferred
-  {
-    bool unannounced = false;
-    std::uint64_t blocks = 0, samples = 0;  // compared
-    std::uint64_t first = 0, last = 0;      // numbers of samples
-  };
-  std::map<std::uint64_t, Inferred> inferred_;  // runs that began with a block whose answer is not recorded
-  std::size_t taken_ = 0;                       // the last block that was
-  std::size_t decided_ = 0;                     // blocks so far
-  std::optional<Loss> lost_;                    // while the motion is not known
+  std::vector<Account> accounts_;        // none: the motion is not known
+  std::vector<std::size_t> unanswered_;  // blocks since the last one with an answer
+  std::uint64_t run_ = 0;                // from rest to rest; 0: none
+  std::vector<std::uint64_t> run_of_;    // by block; 0: not recomputed
+  std::set<std::uint64_t> open_runs_;    // whose end is not known
+  std::size_t taken_ = 0;                // the last block that was
+  std::size_t decided_ = 0;              // blocks so far
+  std::optional<Loss> lost_;             // while the motion is not known
   std::uint64_t lost_blocks_ = 0;
-  std::map<std::string, std::pair<Loss, std::uint64_t>> missing_;  // by topic: the answers that are, and how many
-  ContactReplay contact_;
-  std::size_t epoch_ = 0;
+  ContactReplay contact_;  // up to the last block decided on
+  std::size_t simulator_ = 0;
   std::map<std::tuple<std::size_t, double, double>, std::shared_ptr<const core::SwitchedModel>> models_;
-  std::map<std::tuple<std::size_t, double, double>, StreamSimulation> resting_;
   std::optional<ReplayDifference> difference_;
   std::size_t difference_block_ = 0;
 };
 
-std::shared_ptr<const core::SwitchedModel> Replay::model(std::size_t epoch, const core::ContactParameters& contact)
+std::shared_ptr<const core::SwitchedModel> Replay::model(std::size_t simulator, const core::ContactParameters& contact)
 {
-  auto& known = models_[{epoch, contact.stiffness, contact.clearance}];
+  auto& known = models_[{simulator, contact.stiffness, contact.clearance}];
   if (!known)
   {
-    core::SystemParameters parameters = epochs_[epoch].model.parameters;
+    core::SystemParameters parameters = simulators_[simulator].model.parameters;
     parameters.contact = contact;
     known = std::make_shared<const core::SwitchedModel>(parameters);
   }
@@ -554,11 +282,16 @@ void Replay::judgeWhatIsComplete()
     {
       return;
     }
-    Block block = std::move(waiting_.front());
+    const Block block = std::move(waiting_.front());
     waiting_.pop_front();
+    const std::optional<std::size_t> start = startOf(block);
+    if (start)
+    {
+      startAnew(block, *start);
+    }
     if (recorded == recorded_.end())
     {
-      leaveUnanswered(std::move(block));
+      leaveUnanswered(block, start.has_value());
     }
     else
     {
@@ -569,190 +302,263 @@ void Replay::judgeWhatIsComplete()
   }
 }
 
-void Replay::leaveUnanswered(Block block)
+/// The simulator that starts from rest with a block. Without a record of the starts the first block may be one; others
+/// show by what does not fit (judge()).
+std::optional<std::size_t> Replay::startOf(const Block& block)
 {
-  unanswered_.push_back(std::move(block));
-  if (unanswered_.size() > most_tried)
+  if (topics_.stream_start.empty())
   {
-    noteMissing(topics_.gap, unanswered_.front());
-    noteMissing(topics_.contact_force, unanswered_.front());
-    unanswered_.pop_front();
-    forgotten_ = true;
+    return block.index == 0 ? std::optional<std::size_t>(0) : std::nullopt;
   }
+  return starts_.take(block.samples);
+}
+
+/// By the rules of time a motion begins anew in its course; by a reset, a pause or in another simulator, aside from it.
+void Replay::startAnew(const Block& block, std::size_t simulator)
+{
+  std::vector<Account> restarting;
+  for (const Account& account : accounts_)
+  {
+    Account trial = account;
+    if (simulator == simulator_ && feed(trial, block) == Verdict::Action::Restart)
+    {
+      restarting.push_back(account);
+      restarting.back().skips = false;
+    }
+  }
+  if (!restarting.empty())
+  {
+    accounts_ = std::move(restarting);
+    return;
+  }
+  leaveMotion(block.index);
+  if (simulator > simulator_ && simulator < simulators_.size())
+  {
+    simulator_ = simulator;
+    contact_ = ContactReplay(simulators_[simulator].model);
+  }
+  accounts_.push_back(atRest(simulator_, contact_));
+}
+
+Account Replay::atRest(std::size_t simulator, const ContactReplay& contact)
+{
+  return {{model(simulator, contact.contact()), limits_}, contact, simulator, {}, 0, false};
+}
+
+Verdict::Action Replay::feed(Account& account, const Block& block, const StreamSimulation::Answer** answer)
+{
+  for (const RecordedChange& change : account.contact.comeWith(block.samples, limits_.max_stamp_jitter))
+  {
+    const auto changed = model(account.simulator, change.contact);
+    try
+    {
+      account.simulation.setContact(changed, change.seq);
+    }
+    catch (const std::invalid_argument&)  // where blocks are missing, the sample may be behind
+    {
+      account.simulation.setContact(changed, 0);
+    }
+  }
+  const bool in_contact = account.simulation.inContact();
+  const StreamSimulation::Answer& given = account.simulation.advance(block.samples);
+  const Verdict::Action action = given.verdict.action;
+  if (action != Verdict::Action::Refuse)
+  {
+    account.contact.take(block.samples);
+  }
+  account.steps.push_back({block.index, action, in_contact && action == Verdict::Action::Restart, given.impacts,
+                           given.contact_changes.size()});
+  if (answer != nullptr)
+  {
+    *answer = &given;
+  }
+  return action;
 }
 
 void Replay::judge(const Block& block, const Answers& recorded)
 {
   std::optional<ReplayDifference> difference;
-  if (!follow(block, recorded, difference) && !startAnew(block, recorded, difference))
+  std::vector<Account> before;
+  std::vector<Account> resting;
+  const bool starts_are_known = !topics_.stream_start.empty();
+  if (!starts_are_known)
   {
-    const std::string reason = doubt(block);
-    if (reason.empty())
+    before = accounts_;
+  }
+  Account* account = firstThatFits(accounts_, block, recorded, difference);
+  if (account == nullptr && !starts_are_known)
+  {
+    // Of the present simulator, or of the next one.
+    resting.push_back(atRest(simulator_, contact_));
+    if (simulator_ + 1 < simulators_.size())
     {
-      difference_ = difference;
-      difference_block_ = block.index;
-      return;
+      resting.push_back(atRest(simulator_ + 1, ContactReplay(simulators_[simulator_ + 1].model)));
     }
+    account = firstThatFits(resting, block, recorded, difference);
+    if (account != nullptr)
+    {
+      accounts_ = std::move(before);
+      leaveMotion(block.index);
+    }
+  }
+  if (account != nullptr)
+  {
+    adopt(std::move(*account), block, recorded);
+  }
+  else if (const std::string reason = doubt(block); !reason.empty())
+  {
     loseTrack(block, reason);
   }
+  else
+  {
+    difference_ = difference;
+    difference_block_ = block.index;
+    return;
+  }
   unanswered_.clear();
-  forgotten_ = false;
-  before_.reset();
   decided_ = block.index + 1;
   placeImpacts();
-  dropRefuted();
 }
 
-/// Whether the motion so far explains the recorded answers. Of blocks without one either the recording has lost the
-/// answers, or the simulator never had them.
-bool Replay::follow(const Block& block, const Answers& recorded, std::optional<ReplayDifference>& difference)
+/// The first account that explains the recorded answers; none: `difference` is that of the first.
+Account* Replay::firstThatFits(std::vector<Account>& accounts, const Block& block, const Answers& recorded,
+                               std::optional<ReplayDifference>& difference)
 {
-  if (!player_)
+  for (Account& account : accounts)
   {
-    return false;
-  }
-  contact_ = player_->contact;
-  epoch_ = player_->epoch;
-  if (!unanswered_.empty() && !forgotten_)
-  {
-    Player fork = *player_;
-    if (!attempt(fork, unanswered_.size(), block, recorded))
+    const StreamSimulation::Answer* answer = nullptr;
+    std::optional<ReplayDifference> found;
+    if (feed(account, block, &answer) == Verdict::Action::Refuse)
     {
-      player_ = std::move(fork);
-      adopt(block, recorded);
-      return true;
+      found = ReplayDifference{topics_.base_excitation, text("block of seq ", block.samples.seq), "answer",
+                               "there is one", "refused, " + answer->verdict.reason};
     }
+    if (recorded.force && !found)
+    {
+      found = compare(topics_.contact_force, "force", *recorded.force, answer->force);
+    }
+    if (recorded.gap && !found)
+    {
+      found = compare(topics_.gap, "gap", *recorded.gap, answer->gap);
+    }
+    if (!found)
+    {
+      return &account;
+    }
+    difference = difference ? difference : found;
   }
-  if (player_->simulation.inContact())
-  {
-    before_ = player_->simulation;
-  }
-  difference = attempt(*player_, 0, block, recorded);
-  if (difference)
-  {
-    return false;
-  }
-  report_.not_taken += unanswered_.size();
-  adopt(block, recorded);
-  return true;
+  return nullptr;
 }
 
-/// Whether a start from rest, with this block or with one before it whose answer is not recorded, explains the answers.
-bool Replay::startAnew(const Block& block, const Answers& recorded, std::optional<ReplayDifference>& difference)
+/// The first block without an answer is where the accounts part: one has it and what follows, the other has not.
+void Replay::leaveUnanswered(const Block& block, bool is_start)
 {
-  std::vector<std::pair<std::size_t, ContactReplay>> starts{{epoch_, contact_}};
-  if (epoch_ + 1 < epochs_.size())
+  unanswered_.push_back(block.index);
+  if (accounts_.empty())
   {
-    const bool over = contact_.told() == contact_.recorded().changes.size();
-    starts.emplace(over ? starts.begin() : starts.end(), epoch_ + 1, ContactReplay(epochs_[epoch_ + 1].model));
+    contact_.comeWith(block.samples, limits_.max_stamp_jitter);
+    contact_.take(block.samples);
+    return;
   }
-  for (std::size_t before = 0; before <= unanswered_.size(); ++before)
+  const bool part = !is_start && std::none_of(accounts_.begin(), accounts_.end(),
+                                              [](const Account& account) { return account.skips; });
+  std::vector<Account> accounts;
+  bool is_taken = false;
+  for (Account& account : accounts_)
   {
-    for (const auto& [epoch, contact] : starts)
+    if (account.skips)
     {
-      Player player{atRest(epoch, contact.contact()), contact, epoch};
-      const auto found = attempt(player, before, block, recorded);
-      if (!found)
-      {
-        if (player_ && unanswered_.empty() && before_)
-        {
-          // The motion before may have been ended in good order, or not.
-          for (const StampedImpact& impact : before_->reset().impacts)
-          {
-            impacts_.addRecomputed(run_, impact, block.index, false);
-          }
-        }
-        else if (player_ && !unanswered_.empty())
-        {
-          open_runs_.insert(run_);
-        }
-        const bool unannounced = player_.has_value();
-        report_.unannounced += unannounced ? 1 : 0;
-        for (std::size_t i = 0; i + before < unanswered_.size(); ++i)
-        {
-          noteMissing(topics_.gap, unanswered_[i]);
-          noteMissing(topics_.contact_force, unanswered_[i]);
-        }
-        player_ = std::move(player);
-        adopt(block, recorded);
-        if (const auto inferred = inferred_.find(run_); inferred != inferred_.end())
-        {
-          inferred->second.unannounced = unannounced;
-        }
-        return true;
-      }
-      difference = difference ? difference : found;
-      if (player.contact.told() == contact.told())
-      {
-        player.simulation.reset();
-        resting_.emplace(std::make_tuple(epoch, contact.contact().stiffness, contact.contact().clearance),
-                         std::move(player.simulation));
-      }
+      ++account.skipped;
+      accounts.push_back(std::move(account));
+      continue;
+    }
+    std::optional<Account> without;
+    if (part)
+    {
+      without = account;
+      without->skips = true;
+      ++without->skipped;
+    }
+    const bool takes = feed(account, block) != Verdict::Action::Refuse;
+    is_taken = is_taken || takes;
+    accounts.push_back(std::move(account));
+    if (takes && without)
+    {
+      accounts.push_back(std::move(*without));
     }
   }
-  return false;
+  accounts_ = std::move(accounts);
+  // Nothing that is recorded would show what was made of it, and a motion may forget its beginning to the last bit.
+  if (const std::string reason = missingBefore(block); is_taken && !is_start && !reason.empty())
+  {
+    unanswered_.pop_back();
+    loseTrack(block, reason);
+    unanswered_.clear();
+  }
+}
+
+/// What is missing in the excitation right before a block; empty: nothing.
+std::string Replay::missingBefore(const Block& block) const
+{
+  const std::uint64_t expected = block.index == 0 ? 0 : answers_.excitation()[block.index - 1].end();
+  return block.index == 0 || block.samples.seq <= expected
+             ? std::string()
+             : text("the excitation of seq ", expected, " to ", block.samples.seq - 1, " is missing");
 }
 
 /// Why the motion before a block may be another one than is known here; empty: there is no reason.
 std::string Replay::doubt(const Block& block) const
 {
-  const std::vector<BlockHead>& heads = answers_.excitation();
   const std::uint64_t seq = block.samples.seq;
-  const Epoch& epoch = epochs_[epoch_];
-  if (epoch.first_number > 0 && block.samples.stamp < epoch.model.known_from.stamp)
+  const RecordedSimulator& simulator = simulators_[simulator_];
+  if (simulator.first_number > 0 && block.samples.stamp < simulator.model.known_from.stamp)
   {
-    return text("topic ", topics_.model_info, ": the contact before seq ", epoch.model.known_from.seq, " is missing");
+    return text("topic ", topics_.model_info, ": the contact before seq ", simulator.model.known_from.seq,
+                " is missing");
   }
-  if (const auto missing = epoch.missing.find(contact_.told()); missing != epoch.missing.end())
+  if (const auto missing = simulator.missing.find(contact_.told()); missing != simulator.missing.end())
   {
     return text("topic ", topics_.model_info, ": number ", missing->second, " is missing");
   }
   if (!unanswered_.empty())
   {
-    return text("it is not known which of the blocks before it, from seq ", unanswered_.front().samples.seq,
-                " on, the simulator had: their answers are missing");
-  }
-  if (seq == 0)
-  {
-    return {};
+    return text("it is not known which of the blocks before it, from seq ",
+                answers_.excitation()[unanswered_.front()].seq, " on, the simulator had: their answers are missing");
   }
   if (lost_)
   {
     return lost_->reason;
   }
-  if (block.index == 0)
+  if (accounts_.empty() || (topics_.stream_start.empty() && block.index == 0 && seq > 0))
   {
     return "the recording begins in the middle of the stream";
   }
-  const std::uint64_t expected = heads[block.index - 1].end();
-  if (seq > expected)
+  if (block.index > 0 && seq < answers_.excitation()[block.index - 1].end())
   {
-    return text("the excitation of seq ", expected, " to ", seq - 1, " is missing");
+    return text("the excitation before seq ", seq, " is missing, where a stream begins anew");
   }
-  return seq < expected ? text("the excitation before seq ", seq, " is missing, where a stream begins anew")
-                        : std::string();
+  return missingBefore(block);
 }
 
+/// What is known of the contact goes on.
 void Replay::loseTrack(const Block& block, const std::string& reason)
 {
-  if (player_)
+  if (!accounts_.empty())
   {
     open_runs_.insert(run_);
-    player_.reset();
+    const auto present = std::find_if(accounts_.begin(), accounts_.end(),
+                                      [this](const Account& account) { return account.simulator == simulator_; });
+    contact_ = present == accounts_.end() ? contact_ : present->contact;
+    accounts_.clear();
   }
-  const Block& first = unanswered_.empty() ? block : unanswered_.front();
+  contact_.comeWith(block.samples, limits_.max_stamp_jitter);
+  contact_.take(block.samples);
   if (!lost_)
   {
-    lost_ = Loss{first.samples.seq, 0, reason};
+    lost_ = Loss{unanswered_.empty() ? block.samples.seq : answers_.excitation()[unanswered_.front()].seq, 0, reason};
     lost_blocks_ = 0;
   }
-  unanswered_.push_back(block);
-  for (const Block& passed : unanswered_)
-  {
-    contact_.comeWith(passed.samples, limits_.max_stamp_jitter);
-    contact_.take(passed.samples);
-  }
-  lost_blocks_ += unanswered_.size();
+  lost_blocks_ += unanswered_.size() + 1;
   lost_->last = block.samples.seq + block.samples.values.size();
 }
 
@@ -767,201 +573,77 @@ void Replay::closeLoss()
   }
 }
 
-void Replay::noteMissing(const std::string& topic, const Block& block)
+void Replay::noteMissing(std::size_t block, bool gap, bool force)
 {
-  auto& [loss, blocks] = missing_[topic];
-  if (blocks > 0 && loss.last != block.samples.seq)
+  if (gap)
   {
-    flushMissing(topic);
+    missing_gaps_.add(answers_.excitation()[block], report_.losses);
   }
-  if (blocks == 0)
+  if (force)
   {
-    loss.first = block.samples.seq;
-  }
-  loss.last = block.samples.seq + block.samples.values.size();
-  ++blocks;
-}
-
-void Replay::flushMissing(const std::string& topic)
-{
-  auto& [loss, blocks] = missing_[topic];
-  if (blocks > 0)
-  {
-    loss.reason = text("topic ", topic, ": seq ", loss.first, " to ", loss.last - 1, " (", blocks,
-                       blocks == 1 ? " block" : " blocks", ") is missing");
-    report_.losses.push_back(loss);
-    blocks = 0;
+    missing_forces_.add(answers_.excitation()[block], report_.losses);
   }
 }
 
-const StreamSimulation::Answer& Replay::feed(Player& player, const Block& block)
-{
-  for (const RecordedChange& change : player.contact.comeWith(block.samples, limits_.max_stamp_jitter))
-  {
-    const auto changed = model(player.epoch, change.contact);
-    try
-    {
-      player.simulation.setContact(changed, change.seq);
-    }
-    catch (const std::invalid_argument&)  // where blocks are missing, the sample may be behind
-    {
-      player.simulation.setContact(changed, 0);
-    }
-  }
-  const bool in_contact = player.simulation.inContact();
-  const StreamSimulation::Answer& answer = player.simulation.advance(block.samples);
-  const Verdict::Action action = answer.verdict.action;
-  if (action != Verdict::Action::Refuse)
-  {
-    player.contact.take(block.samples);
-  }
-  steps_.push_back({block.index, action, in_contact && action == Verdict::Action::Restart, answer.impacts,
-                    answer.contact_changes.size()});
-  return answer;
-}
-
-/// Plays the last so many blocks without an answer, and then `block`, for whose answers it returns the difference.
-std::optional<ReplayDifference> Replay::attempt(Player& player, std::size_t unanswered, const Block& block,
-                                                const Answers& recorded)
-{
-  steps_.clear();
-  for (std::size_t i = unanswered_.size() - unanswered; i < unanswered_.size(); ++i)
-  {
-    feed(player, unanswered_[i]);
-  }
-  const StreamSimulation::Answer& answer = feed(player, block);
-  if (answer.verdict.action == Verdict::Action::Refuse)
-  {
-    return ReplayDifference{topics_.base_excitation, text("block of seq ", block.samples.seq), "answer", "there is one",
-                            "refused, " + answer.verdict.reason};
-  }
-  std::optional<ReplayDifference> difference;
-  if (recorded.force)
-  {
-    difference = compare(topics_.contact_force, "force", *recorded.force, answer.force);
-  }
-  if (recorded.gap && !difference)
-  {
-    difference = compare(topics_.gap, "gap", *recorded.gap, answer.gap);
-  }
-  return difference;
-}
-
-StreamSimulation Replay::atRest(std::size_t epoch, const core::ContactParameters& contact)
-{
-  const auto kept = resting_.find({epoch, contact.stiffness, contact.clearance});
-  if (kept == resting_.end())
-  {
-    return {model(epoch, contact), limits_};
-  }
-  StreamSimulation simulation = std::move(kept->second);
-  resting_.erase(kept);
-  return simulation;
-}
-
-/// What was attempted explains the recorded answers.
-void Replay::adopt(const Block& block, const Answers& recorded)
+/// What explains the recorded answers is what there was.
+void Replay::adopt(Account account, const Block& block, const Answers& recorded)
 {
   closeLoss();
-  std::size_t unanswered = unanswered_.size() + 1 - steps_.size();
-  for (const Step& step : steps_)
+  for (const Step& step : account.steps)
   {
-    const bool is_answered = step.block == block.index;
-    if (step.action == Verdict::Action::Refuse)
+    adopt(step);
+    if (step.action != Verdict::Action::Refuse && step.block != block.index)
     {
-      ++report_.refused;
-      ++unanswered;
-      continue;
-    }
-    std::size_t impact = 0;
-    if (step.cuts_short)
-    {
-      impacts_.addRecomputed(run_, step.impacts[impact++], step.block, true);
-    }
-    if (step.action == Verdict::Action::Start || step.action == Verdict::Action::Restart)
-    {
-      ++run_;
-      ++report_.starts;
-      if (!is_answered)
-      {
-        inferred_[run_].first = block.samples.seq;
-        impacts_.doubt(run_);
-      }
-    }
-    else
-    {
-      // Impacts of a stretch that was bridged are dated in blocks that were not taken.
-      std::fill(run_of_.begin() + static_cast<std::ptrdiff_t>(taken_ + 1),
-                run_of_.begin() + static_cast<std::ptrdiff_t>(step.block), run_);
-    }
-    taken_ = step.block;
-    report_.bridged += step.action == Verdict::Action::Bridge ? 1 : 0;
-    report_.contact_changes += step.contact_changes;
-    run_of_[step.block] = run_;
-    for (; impact < step.impacts.size(); ++impact)
-    {
-      impacts_.addRecomputed(run_, step.impacts[impact], step.block, true);
-    }
-    if (!is_answered)
-    {
-      noteMissing(topics_.gap, unanswered_[unanswered]);
-      noteMissing(topics_.contact_force, unanswered_[unanswered]);
-      ++unanswered;
+      noteMissing(step.block, true, true);
     }
   }
-  if (!recorded.gap)
-  {
-    noteMissing(topics_.gap, block);
-  }
-  if (!recorded.force)
-  {
-    noteMissing(topics_.contact_force, block);
-  }
+  noteMissing(block.index, !recorded.gap, !recorded.force);
   if (recorded.gap && recorded.force)
   {
     ++report_.blocks;
     report_.samples += block.samples.values.size();
   }
-  if (const auto inferred = inferred_.find(run_); inferred != inferred_.end())
-  {
-    const bool both = recorded.gap && recorded.force;
-    inferred->second.blocks += both ? 1 : 0;
-    inferred->second.samples += both ? block.samples.values.size() : 0;
-    inferred->second.last = block.samples.seq + block.samples.values.size();
-  }
+  report_.not_taken += account.skipped;
+  account.steps.clear();
+  account.skipped = 0;
+  account.skips = false;
+  contact_ = account.contact;
+  simulator_ = account.simulator;
+  std::vector<Account> only;
+  only.push_back(std::move(account));
+  accounts_ = std::move(only);
 }
 
-/// A motion that did not begin where it was inferred to is not known.
-void Replay::dropRefuted()
+void Replay::adopt(const Step& step)
 {
-  const std::uint64_t run = impacts_.takeRefuted();
-  if (run == 0)
+  if (step.action == Verdict::Action::Refuse)
   {
+    ++report_.refused;
     return;
   }
-  const Inferred inferred = inferred_[run];
-  inferred_.erase(run);
-  report_.blocks -= inferred.blocks;
-  report_.samples -= inferred.samples;
-  --report_.starts;
-  report_.unannounced -= inferred.unannounced ? 1 : 0;
-  const Loss loss{inferred.first, inferred.last, "it is not known which of the blocks before them the simulator had"};
-  const bool goes_on = run == run_ && player_;
-  if (goes_on)
+  auto impact = step.impacts.begin();
+  if (step.cuts_short)
   {
-    contact_ = player_->contact;
-    epoch_ = player_->epoch;
-    player_.reset();
+    impacts_.addRecomputed(run_, *impact++, step.block, true);
   }
-  const std::optional<Loss> present = lost_;
-  const std::uint64_t present_blocks = lost_blocks_;
-  lost_ = loss;
-  lost_blocks_ = inferred.blocks;
-  if (!goes_on)
+  if (step.action == Verdict::Action::Start || step.action == Verdict::Action::Restart)
   {
-    closeLoss();
-    lost_ = present;
-    lost_blocks_ = present_blocks;
+    ++run_;
+    ++report_.starts;
+  }
+  else
+  {
+    // Impacts of a stretch that was bridged are dated in blocks that were not taken.
+    std::fill(run_of_.begin() + static_cast<std::ptrdiff_t>(taken_ + 1),
+              run_of_.begin() + static_cast<std::ptrdiff_t>(step.block), run_);
+  }
+  taken_ = step.block;
+  report_.bridged += step.action == Verdict::Action::Bridge ? 1 : 0;
+  report_.contact_changes += step.contact_changes;
+  run_of_[step.block] = run_;
+  for (; impact != step.impacts.end(); ++impact)
+  {
+    impacts_.addRecomputed(run_, *impact, step.block, true);
   }
 }
 
@@ -988,32 +670,57 @@ void Replay::placeImpacts()
   unplaced_.erase(std::remove_if(unplaced_.begin(), unplaced_.end(), is_placed), unplaced_.end());
 }
 
-/// Blocks behind the last answer.
-void Replay::settleUnanswered()
+/// Blocks whose fate no later answer tells. Returns whether the motion behind them is known.
+bool Replay::settleUnanswered()
 {
-  bool taken = forgotten_;
-  for (const Block& block : unanswered_)
+  std::set<std::size_t> refused;
+  if (!accounts_.empty())
   {
-    if (player_ && !forgotten_ && feed(*player_, block).verdict.action == Verdict::Action::Refuse)
+    for (const Step& step : accounts_.front().steps)
     {
-      ++report_.refused;
-      continue;
+      if (step.action == Verdict::Action::Refuse)
+      {
+        refused.insert(step.block);
+      }
     }
-    taken = true;
-    noteMissing(topics_.gap, block);
-    noteMissing(topics_.contact_force, block);
   }
-  if (player_ && (taken || answers_.endsUnasked()))
+  for (const std::size_t block : unanswered_)
+  {
+    if (refused.count(block) == 0)
+    {
+      noteMissing(block, true, true);
+    }
+  }
+  const bool is_known = unanswered_.size() == refused.size();
+  report_.refused += refused.size();
+  unanswered_.clear();
+  return is_known;
+}
+
+/// Another one begins with a block, aside from the rules of time.
+void Replay::leaveMotion(std::size_t next_block)
+{
+  report_.unannounced += accounts_.empty() ? 0 : 1;
+  endMotion(next_block, settleUnanswered());
+  accounts_.clear();
+}
+
+/// The motion ends before a block.
+void Replay::endMotion(std::size_t next_block, bool is_known)
+{
+  if (accounts_.empty())
+  {
+    return;
+  }
+  if (!is_known)
   {
     open_runs_.insert(run_);
+    return;
   }
-  else if (player_)
+  // The simulator, or the recorder, may have ended in good order or not.
+  for (const StampedImpact& impact : accounts_.front().simulation.reset().impacts)
   {
-    // A recorder may have ended before the simulator did.
-    for (const StampedImpact& impact : player_->simulation.reset().impacts)
-    {
-      impacts_.addRecomputed(run_, impact, decided_, false);
-    }
+    impacts_.addRecomputed(run_, impact, next_block, false);
   }
 }
 
@@ -1021,13 +728,12 @@ ReplayReport Replay::finish()
 {
   if (!difference_)
   {
-    settleUnanswered();
+    const bool is_known = settleUnanswered();
+    endMotion(decided_, is_known && !answers_.endsUnasked());
   }
   closeLoss();
-  for (const std::string& topic : {topics_.gap, topics_.contact_force})
-  {
-    flushMissing(topic);
-  }
+  missing_gaps_.flush(report_.losses);
+  missing_forces_.flush(report_.losses);
   report_.impacts_not_compared += unplaced_.size();
   const auto is_judged = [this](std::uint64_t run, const Impact& impact, std::size_t block)
   {
@@ -1062,7 +768,12 @@ ReplayReport checkReplay(const RecordedRun& recording, const StreamLimits& limit
     return [&progress, from, to](double done) { progress(from + (to - from) * done); };
   };
   const RecordedAnswers answers(recording, share(0.0, first_reading));
-  Replay replay(recording.topics(), answers, epochs(recording), limits);
+  std::vector<RecordedSimulator> simulators = recordedSimulators(recording);
+  if (simulators.empty())
+  {
+    throw config::Error("topic " + recording.topics().model_info + ": holds no message");
+  }
+  Replay replay(recording.topics(), answers, std::move(simulators), RecordedStarts(recording), limits);
   recording.read(replay, share(first_reading, 1.0));
   return replay.finish();
 }

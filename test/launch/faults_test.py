@@ -25,7 +25,7 @@ from node_process import PATIENCE, NodeProcessTest, free_port, is_connected, wai
 from vibro_impact.msg import BaseExcitation, Gap
 
 PACKAGE = rospkg.RosPack().get_path("vibro_impact")
-TOPICS = ["base_excitation", "gap", "contact_force", "impact", "model_info"]
+TOPICS = ["base_excitation", "gap", "contact_force", "impact", "model_info", "stream_start"]
 RATE = 10000.0
 BLOCK = 100
 

@@ -67,6 +67,7 @@ public:
     const auto model = std::make_shared<const core::SwitchedModel>(parameters);
     simulation_ = std::make_unique<StreamSimulation>(model, StreamLimits{});
     changes_ = 0;
+    starts_ = 0;
     ModelInfo info;
     toMessage(*model, config::toYaml(parameters), "0.0.0", info);
     write("model_info", info);
@@ -139,6 +140,15 @@ public:
     {
       writeImpacts(answer);
     }
+    const Verdict::Action action = answer.verdict.action;
+    if (starts_are_recorded && (action == Verdict::Action::Start || action == Verdict::Action::Restart))
+    {
+      StreamStart start;
+      start.header.stamp = toTime(answer.gap.stamp);
+      start.seq = answer.gap.seq;
+      start.number = starts_++;
+      write("stream_start", start);  // latched: also a recorder that comes later has it
+    }
     if (force_is_recorded && !answer.force.values.empty())
     {
       ContactForce force;
@@ -164,6 +174,7 @@ public:
   }
 
   bool change_is_recorded = true;
+  bool starts_are_recorded = true;
 
 private:
   void writeImpacts(const StreamSimulation::Answer& answer)
@@ -185,6 +196,7 @@ private:
   core::SystemParameters parameters_;
   std::unique_ptr<StreamSimulation> simulation_;
   std::uint64_t changes_ = 0;
+  std::uint64_t starts_ = 0;
   std::vector<std::function<void(rosbag::Bag&, const ros::Time&)>> messages_;
 };
 
@@ -384,15 +396,15 @@ TEST_F(ReplayCheck, FollowsAStreamThatRestartsBridgesAndRefuses)
   Samples next = Recorder::block(2100);  // bridged
   recorder.play(next);
   recorder.play(2500, 4000);
-  recorder.play(Recorder::block(3700));  // a repetition; it does not matter which of the two was taken
+  recorder.play(Recorder::block(3700));  // a repetition, refused
   recorder.play(0, 2000, 2000.0);        // the shaker restarts
   recorder.play(400, 2000, 1900.0);      // the clock goes back
   recorder.play(0, 2000, 2000.0);        // a looped bag
   recorder.reset();
   const Outcome outcome = check(recorder);
   expectIdentical(outcome, "24 blocks, 9600 samples, ");
-  EXPECT_THAT(outcome.out, HasSubstr("\n4 starts from rest, 0 changes of the contact, 1 gaps bridged, 1 blocks "
-                                     "refused, 1 not taken\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("\n4 starts from rest, 0 changes of the contact, 1 gaps bridged, 2 blocks "
+                                     "refused, 0 not taken\n"));
 }
 
 TEST_F(ReplayCheck, FollowsAClockThatSteps)
@@ -409,18 +421,64 @@ TEST_F(ReplayCheck, FollowsAClockThatSteps)
               HasSubstr("\n3 starts from rest, 0 changes of the contact, 1 gaps bridged, 1 blocks refused"));
 }
 
-TEST_F(ReplayCheck, FindsAResetAndAnotherSimulator)
+TEST_F(ReplayCheck, FollowsAResetAndAnotherSimulator)
+{
+  const core::SystemParameters first = parameters_;
+  parameters_.contact.stiffness = 5.0e4;
+  for (const bool starts_are_recorded : {true, false})
+  {
+    Recorder recorder(first);
+    recorder.starts_are_recorded = starts_are_recorded;
+    recorder.play(0, 2000);
+    recorder.reset();
+    recorder.play(2000, 4000);
+    recorder.startSimulator(parameters_);
+    recorder.play(4000, 8000);
+    recorder.startSimulator(parameters_);
+    recorder.play(8000, 10000);
+    const Outcome outcome = check(recorder);
+    expectIdentical(outcome, "25 blocks, 10000 samples, ");
+    EXPECT_THAT(outcome.out, HasSubstr("4 starts from rest (3 by a reset or another simulator)"));
+  }
+}
+
+TEST_F(ReplayCheck, KnowsAStartBeforeTheFirstAnswerThatIsRecorded)
 {
   Recorder recorder(parameters_);
+  for (std::uint64_t seq = 0; seq < 800; seq += block_size)
+  {
+    recorder.record(Recorder::block(seq));  // before the simulator was there
+  }
+  for (std::uint64_t seq = 800; seq < 1600; seq += block_size)
+  {
+    recorder.record(Recorder::block(seq));
+    recorder.answer(Recorder::block(seq), false, false);
+  }
+  recorder.play(1600, 4000);
+  expectIncomplete(recorder, "6 blocks, 2400 samples, ", "topic gap: seq 0 to 1599 (4 blocks) is missing\n");
+}
+
+TEST_F(ReplayCheck, TakesABlockThatComesTwiceAtAStart)
+{
+  Recorder recorder(parameters_);
+  recorder.play(0, 400);
+  recorder.play(0, 400);  // refused
+  recorder.play(400, 4000);
+  const Outcome outcome = check(recorder);
+  expectIdentical(outcome, "10 blocks, 4000 samples, ");
+  EXPECT_THAT(outcome.out,
+              HasSubstr("\n1 start from rest, 0 changes of the contact, 0 gaps bridged, 1 blocks refused, "));
+}
+
+TEST_F(ReplayCheck, TellsADifferenceFromAStart)
+{
+  // Where the starts are recorded, nothing else is taken for one.
+  Recorder recorder(parameters_);
   recorder.play(0, 2000);
+  recorder.starts_are_recorded = false;
   recorder.reset();
   recorder.play(2000, 4000);
-  parameters_.contact.stiffness = 5.0e4;
-  recorder.startSimulator(parameters_);
-  recorder.play(4000, 8000);
-  const Outcome outcome = check(recorder);
-  expectIdentical(outcome, "20 blocks, 8000 samples, ");
-  EXPECT_THAT(outcome.out, HasSubstr("3 starts from rest (2 by a reset or another simulator)"));
+  expectDifference(check(recorder), "topic contact_force, block of seq 2000, sample ");
 }
 
 TEST_F(ReplayCheck, FindsASimulatorWhoseFirstAnswersAreNotRecorded)
@@ -539,8 +597,9 @@ TEST_F(ReplayCheck, IsNotDeceivedByAMotionThatForgetsItsBeginning)
   }
   recorder.play(42800, 44800);
   recorder.play(0, 2000, 2000.0);
-  expectIncomplete(recorder, "10 blocks, 4000 samples, ",
-                   "it is not known which of the blocks before them the simulator had");
+  expectIncomplete(
+      recorder, "10 blocks, 4000 samples, ",
+      "105 blocks from seq 2800 to 44799 cannot be recomputed: the excitation of seq 2000 to 2799 is missing");
   EXPECT_THAT(run(bag()).out, HasSubstr("\n2 starts from rest, "));
 }
 

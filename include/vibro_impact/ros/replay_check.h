@@ -50,9 +50,10 @@ struct ReplayReport
 
 /// Recomputes gap, contact force and impacts from the excitation and the model_info of a recording, as a simulator with
 /// these limits does, and compares every bit. Where the recording does not tell the motion (it begins in the middle of
-/// a stream, something is lost) it goes on from the next start from rest. Starts that the excitation does not show
-/// (~reset, a simulator that was started anew) are found by trying: only a start there gives the same bits. Throws
-/// config::Error if the recording is damaged or holds no configuration.
+/// a stream, something is lost) it goes on from the next start from rest. Where a motion began aside from the rules of
+/// time (~reset, ~pause, a simulator that was started anew) stream_start says; in a recording without that topic, a
+/// start from rest is tried where the answers do not fit. Throws config::Error if the recording is damaged or holds no
+/// configuration.
 ReplayReport checkReplay(const RecordedRun& recording, const StreamLimits& limits,
                          const RecordedRun::Progress& progress = {});
 
