@@ -323,7 +323,7 @@ TEST(DriveSteps, meterRefusesMissingSamples)
 TEST(DriveSteps, refusesOptionsOutOfRange)
 {
   EXPECT_THROW(DriveStepFinder(0.0), std::invalid_argument);
-  EXPECT_THROW(DriveStepFinder(std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW(DriveStepFinder{std::numeric_limits<double>::infinity()}, std::invalid_argument);
   StepSearchOptions options;
   options.shortest_step = 3;
   EXPECT_THROW(DriveStepFinder(1e-4, options), std::invalid_argument);
