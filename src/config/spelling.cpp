@@ -8,8 +8,9 @@ namespace vibro_impact::config
 {
 namespace
 {
-// The least number of inserted, deleted, replaced or swapped neighbouring characters that turns `a` into `b`.
-std::size_t editDistance(const std::string& a, const std::string& b)
+// The least number of inserted, deleted, replaced or swapped neighbouring characters that turns `a` into `b`; if it is
+// more than `most`, any number above that.
+std::size_t editDistance(const std::string& a, const std::string& b, std::size_t most)
 {
   // Rows of the table of all beginnings of `a` against all beginnings of `b`: that of i characters of `a`, and the two
   // before it.
@@ -30,6 +31,11 @@ std::size_t editDistance(const std::string& a, const std::string& b)
       {
         row[j] = std::min(row[j], two_above[j - 2] + 1);
       }
+    }
+    // What follows is at least as much as the least of two rows.
+    if (*std::min_element(row.begin(), row.end()) > most && *std::min_element(above.begin(), above.end()) > most)
+    {
+      return most + 1;
     }
   }
   return row.back();
@@ -62,7 +68,7 @@ std::optional<std::string> nearest(const std::string& misspelt, const std::vecto
     {
       continue;
     }
-    const std::size_t distance = editDistance(spelt, word);
+    const std::size_t distance = editDistance(spelt, word, word.size() / 3);
     if (3 * distance <= word.size() && distance < least)
     {
       best = word;
