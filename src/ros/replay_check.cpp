@@ -63,6 +63,12 @@ struct Account
   bool skips = false;         // has not had the last one
 };
 
+enum class Start
+{
+  of_the_same_simulator,
+  of_another_simulator
+};
+
 /// Where the simulators have started from rest, by their own account.
 class RecordedStarts
 {
@@ -70,38 +76,36 @@ public:
   explicit RecordedStarts(const RecordedRun& recording)
   {
     std::optional<StreamStart> last;
-    std::size_t simulator = 0;
     recording.readStreamStart(
         [&](const StreamStart& start)
         {
           const bool is_repetition = last && start.number == last->number && start.seq == last->seq &&
                                      start.header.stamp == last->header.stamp;
-          if (is_repetition)
+          if (!is_repetition)
           {
-            return;
+            starts_[{fromTime(start.header.stamp), start.seq}].push_back(
+                last && start.number <= last->number ? Start::of_another_simulator : Start::of_the_same_simulator);
+            last = start;
           }
-          simulator += last && start.number <= last->number ? 1 : 0;
-          simulators_[{fromTime(start.header.stamp), start.seq}].push_back(simulator);
-          last = start;
         });
   }
 
-  /// Which of the simulators starts with this block. Each start is told once: another block with its number and time is
-  /// a repetition, or that of the next loop.
-  std::optional<std::size_t> take(const Samples& block)
+  /// The start with this block. Each is told once: another block with its number and time is a repetition, or that of
+  /// the next loop.
+  std::optional<Start> take(const Samples& block)
   {
-    const auto found = simulators_.find({block.stamp, block.seq});
-    if (found == simulators_.end() || found->second.empty())
+    const auto found = starts_.find({block.stamp, block.seq});
+    if (found == starts_.end() || found->second.empty())
     {
       return std::nullopt;
     }
-    const std::size_t simulator = found->second.front();
+    const Start start = found->second.front();
     found->second.pop_front();
-    return simulator;
+    return start;
   }
 
 private:
-  std::map<std::pair<Stamp, std::uint64_t>, std::deque<std::size_t>> simulators_;
+  std::map<std::pair<Stamp, std::uint64_t>, std::deque<Start>> starts_;
 };
 
 /// The blocks whose answers are missing on a topic, in stretches.
@@ -207,11 +211,11 @@ private:
   void leaveUnanswered(const Block& block, bool is_start);
   bool settleUnanswered();
 
-  std::optional<std::size_t> startOf(const Block& block);
-  void startAnew(const Block& block, std::size_t simulator);
+  std::optional<Start> startOf(const Block& block);
+  void startAnew(const Block& block, Start start);
   void leaveMotion(std::size_t next_block);
   void endMotion(std::size_t next_block, bool is_known);
-  Account atRest(std::size_t simulator, const ContactReplay& contact);
+  std::vector<Account> atRest(Start start);
   Verdict::Action feed(Account& account, const Block& block, const StreamSimulation::Answer** answer = nullptr);
   Account* firstThatFits(std::vector<Account>& accounts, const Block& block, const Answers& recorded,
                          std::optional<ReplayDifference>& difference);
@@ -284,7 +288,7 @@ void Replay::judgeWhatIsComplete()
     }
     const Block block = std::move(waiting_.front());
     waiting_.pop_front();
-    const std::optional<std::size_t> start = startOf(block);
+    const std::optional<Start> start = startOf(block);
     if (start)
     {
       startAnew(block, *start);
@@ -302,25 +306,24 @@ void Replay::judgeWhatIsComplete()
   }
 }
 
-/// The simulator that starts from rest with a block. Without a record of the starts the first block may be one; others
-/// show by what does not fit (judge()).
-std::optional<std::size_t> Replay::startOf(const Block& block)
+/// Without a record of the starts the first block may be one; others show by what does not fit (judge()).
+std::optional<Start> Replay::startOf(const Block& block)
 {
   if (topics_.stream_start.empty())
   {
-    return block.index == 0 ? std::optional<std::size_t>(0) : std::nullopt;
+    return block.index == 0 ? std::optional<Start>(Start::of_the_same_simulator) : std::nullopt;
   }
   return starts_.take(block.samples);
 }
 
 /// By the rules of time a motion begins anew in its course; by a reset, a pause or in another simulator, aside from it.
-void Replay::startAnew(const Block& block, std::size_t simulator)
+void Replay::startAnew(const Block& block, Start start)
 {
   std::vector<Account> restarting;
   for (const Account& account : accounts_)
   {
     Account trial = account;
-    if (simulator == simulator_ && feed(trial, block) == Verdict::Action::Restart)
+    if (start == Start::of_the_same_simulator && feed(trial, block) == Verdict::Action::Restart)
     {
       restarting.push_back(account);
       restarting.back().skips = false;
@@ -332,17 +335,24 @@ void Replay::startAnew(const Block& block, std::size_t simulator)
     return;
   }
   leaveMotion(block.index);
-  if (simulator > simulator_ && simulator < simulators_.size())
-  {
-    simulator_ = simulator;
-    contact_ = ContactReplay(simulators_[simulator].model);
-  }
-  accounts_.push_back(atRest(simulator_, contact_));
+  accounts_ = atRest(start);
 }
 
-Account Replay::atRest(std::size_t simulator, const ContactReplay& contact)
+/// The present simulator and those to come: one that had no block told its model nonetheless, and one that tells the
+/// same model as the one before it is taken for a repetition (recordedSimulators()).
+std::vector<Account> Replay::atRest(Start start)
 {
-  return {{model(simulator, contact.contact()), limits_}, contact, simulator, {}, 0, false};
+  std::vector<Account> accounts;
+  for (std::size_t simulator = simulator_; simulator < simulators_.size(); ++simulator)
+  {
+    const ContactReplay contact = simulator == simulator_ ? contact_ : ContactReplay(simulators_[simulator].model);
+    accounts.push_back({{model(simulator, contact.contact()), limits_}, contact, simulator, {}, 0, false});
+  }
+  if (start == Start::of_another_simulator)
+  {
+    std::rotate(accounts.begin(), accounts.begin() + 1, accounts.end());
+  }
+  return accounts;
 }
 
 Verdict::Action Replay::feed(Account& account, const Block& block, const StreamSimulation::Answer** answer)
@@ -388,12 +398,7 @@ void Replay::judge(const Block& block, const Answers& recorded)
   Account* account = firstThatFits(accounts_, block, recorded, difference);
   if (account == nullptr && !starts_are_known)
   {
-    // Of the present simulator, or of the next one.
-    resting.push_back(atRest(simulator_, contact_));
-    if (simulator_ + 1 < simulators_.size())
-    {
-      resting.push_back(atRest(simulator_ + 1, ContactReplay(simulators_[simulator_ + 1].model)));
-    }
+    resting = atRest(Start::of_the_same_simulator);
     account = firstThatFits(resting, block, recorded, difference);
     if (account != nullptr)
     {

@@ -442,6 +442,23 @@ TEST_F(ReplayCheck, FollowsAResetAndAnotherSimulator)
   }
 }
 
+TEST_F(ReplayCheck, FollowsSimulatorsOfOneModelOrWithoutABlock)
+{
+  core::SystemParameters other = parameters_;
+  other.contact.stiffness = 5.0e4;
+  Recorder recorder(other);
+  recorder.startSimulator(parameters_);  // before the first block
+  recorder.play(0, 2000);
+  recorder.startSimulator(parameters_);  // says the same as the one before
+  recorder.play(2000, 4000);
+  recorder.startSimulator(parameters_);
+  recorder.startSimulator(other);
+  recorder.play(4000, 6000);
+  const Outcome outcome = check(recorder);
+  expectIdentical(outcome, "15 blocks, 6000 samples, ");
+  EXPECT_THAT(outcome.out, HasSubstr("3 starts from rest (2 by a reset or another simulator)"));
+}
+
 TEST_F(ReplayCheck, KnowsAStartBeforeTheFirstAnswerThatIsRecorded)
 {
   Recorder recorder(parameters_);
