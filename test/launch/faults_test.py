@@ -36,9 +36,9 @@ def configuration(**other):
 
 
 def sine(duration, **other):
-    """Near the resonance, an impact a cycle; for a simulator and a recorder."""
+    """Slow, an impact a cycle: a recorder, which takes in 100 of them, may be kept waiting. For a simulator and a recorder."""
     parameters = {
-        "signal": {"type": "sine", "acceleration": 10.0, "frequency": 434.0, "duration": duration},
+        "signal": {"type": "sine", "acceleration": 10.0, "frequency": 54.0, "duration": duration},
         "sample_rate": RATE, "block_rate": RATE / BLOCK, "wait_for_subscribers": 2, "linger": 0.2,
         "timeout": PATIENCE}
     parameters.update(other)
