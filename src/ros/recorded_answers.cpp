@@ -23,41 +23,11 @@ std::uint64_t distance(std::uint64_t a, std::uint64_t b)
 }
 }  // namespace
 
-class RecordedAnswers::Reader : public RecordingSink
-{
-public:
-  void onExcitation(const BaseExcitation& block) override
-  {
-    excitation.push_back({{block.seq, block.acceleration.size(), block.header.stamp, block.sample_period}, next_++});
-  }
-  void onGap(const BlockHead& block, const std::vector<double>& /*gap*/) override
-  {
-    gaps.push_back({block, next_++});
-  }
-  void onContactForce(const BlockHead& block, const std::vector<double>& /*force*/) override
-  {
-    forces.push_back({block, next_++});
-  }
-  void onImpact(const Impact& /*impact*/) override
-  {
-    ++next_;
-  }
-  void onModelInfo(const ModelInfo& /*info*/) override
-  {
-    ++next_;
-  }
-
-  std::vector<Placed> excitation, gaps, forces;
-
-private:
-  std::uint64_t next_ = 0;
-};
-
 RecordedAnswers::RecordedAnswers(const RecordedRun& recording, const RecordedRun::Progress& progress)
 {
-  Reader reader;
+  PlacingReader reader;
   recording.read(reader, progress);
-  for (const Placed& block : reader.excitation)
+  for (const PlacedBlock& block : reader.excitation)
   {
     excitation_.push_back(block.head);
   }
@@ -65,12 +35,14 @@ RecordedAnswers::RecordedAnswers(const RecordedRun& recording, const RecordedRun
   of_force_ = match(reader.excitation, reader.forces, has_force_);
   findUnasked(reader.gaps, reader.forces);
   findStretches();
+  starts_ = placeStarts(reader.excitation, reader.starts);
 }
 
 // An answer has the number and the stamp of its question. One that has only one of the two, and is left over, is a
 // wrong answer to a question that is left over, too.
-std::vector<std::size_t> RecordedAnswers::match(const std::vector<Placed>& questions,
-                                                const std::vector<Placed>& answers, std::vector<bool>& answered) const
+std::vector<std::size_t> RecordedAnswers::match(const std::vector<PlacedBlock>& questions,
+                                                const std::vector<PlacedBlock>& answers,
+                                                std::vector<bool>& answered) const
 {
   std::vector<std::size_t> by_number(questions.size());
   std::iota(by_number.begin(), by_number.end(), std::size_t{0});
@@ -133,8 +105,7 @@ std::vector<std::size_t> RecordedAnswers::match(const std::vector<Placed>& quest
   // Of a block that comes twice in succession the first is taken.
   for (std::size_t& question : result)
   {
-    while (question != none && question > 0 && !answered[question - 1] && number(question - 1) == number(question) &&
-           stamp(question - 1) == stamp(question))
+    while (question != none && question > 0 && !answered[question - 1] && questions[question].repeats)
     {
       answered[question] = false;
       answered[--question] = true;
@@ -143,10 +114,10 @@ std::vector<std::size_t> RecordedAnswers::match(const std::vector<Placed>& quest
   return result;
 }
 
-void RecordedAnswers::findUnasked(const std::vector<Placed>& gaps, const std::vector<Placed>& forces)
+void RecordedAnswers::findUnasked(const std::vector<PlacedBlock>& gaps, const std::vector<PlacedBlock>& forces)
 {
   std::map<std::pair<ros::Time, std::uint64_t>, std::uint64_t> blocks;  // by stamp and first sample: after the last
-  const auto collect = [&](const std::vector<Placed>& answers, const std::vector<std::size_t>& of)
+  const auto collect = [&](const std::vector<PlacedBlock>& answers, const std::vector<std::size_t>& of)
   {
     for (std::size_t i = 0; i < answers.size(); ++i)
     {
@@ -222,14 +193,18 @@ std::size_t RecordedAnswers::blockOf(std::uint64_t seq, const ros::Time& stamp, 
   {
     for (std::size_t away = 0; away < stretches_.size(); ++away)
     {
-      for (const std::size_t stretch : {middle - away, middle + away})
+      std::size_t nearest = none;
+      // One more on either side: the end of that before may be nearer than a block of this one.
+      for (const std::size_t stretch : {middle - away, middle + away, middle - away - 1, middle + away + 1})
       {
         // Below the first, the difference wraps around.
         const std::size_t block = stretch < stretches_.size() ? inside(stretch, or_behind) : none;
-        if (block != none)
-        {
-          return block;
-        }
+        nearest =
+            block != none && (nearest == none || distance(block, hint) < distance(nearest, hint)) ? block : nearest;
+      }
+      if (nearest != none)
+      {
+        return nearest;
       }
     }
   }

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
+#include "recorded_starts.h"
 #include "vibro_impact/ros/recorded_run.h"
 #include "vibro_impact/ros/recording_check.h"
 
@@ -44,6 +46,13 @@ public:
     return has_force_[block];
   }
 
+  /// The start from rest with a block, or nothing.
+  const RecordedStart* startOf(std::size_t block) const
+  {
+    const auto found = starts_.find(block);
+    return found == starts_.end() ? nullptr : &found->second;
+  }
+
   /// The block of excitation in which, or after which, sample `seq` of this time lies, as near to block `hint` as
   /// possible; `none` if the recording has no such stretch.
   std::size_t blockOf(std::uint64_t seq, const ros::Time& stamp, std::size_t hint) const;
@@ -62,21 +71,15 @@ public:
   }
 
 private:
-  struct Placed
-  {
-    BlockHead head;
-    std::uint64_t position;  // among all messages of the recording
-  };
-  class Reader;
-
-  std::vector<std::size_t> match(const std::vector<Placed>& questions, const std::vector<Placed>& answers,
+  std::vector<std::size_t> match(const std::vector<PlacedBlock>& questions, const std::vector<PlacedBlock>& answers,
                                  std::vector<bool>& answered) const;
-  void findUnasked(const std::vector<Placed>& gaps, const std::vector<Placed>& forces);
+  void findUnasked(const std::vector<PlacedBlock>& gaps, const std::vector<PlacedBlock>& forces);
   void findStretches();
 
   std::vector<BlockHead> excitation_;
   std::vector<std::size_t> of_gap_, of_force_;
   std::vector<bool> has_gap_, has_force_;
+  std::map<std::size_t, RecordedStart> starts_;
   std::vector<std::size_t> stretches_;  // first blocks of stretches in which the numbers ascend
   std::vector<Loss> unasked_;
   bool ends_unasked_ = false;

@@ -279,8 +279,8 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
 {
   const RecordedTopics& topics = implementation_->topics;
   std::vector<std::string> wanted;
-  for (const std::string* topic :
-       {&topics.base_excitation, &topics.gap, &topics.contact_force, &topics.model_info, &topics.impact})
+  for (const std::string* topic : {&topics.base_excitation, &topics.gap, &topics.contact_force, &topics.model_info,
+                                   &topics.impact, &topics.stream_start})
   {
     if (!topic->empty())
     {
@@ -309,6 +309,10 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
                           {
                             sink.onImpact(messageOf<Impact>(instance));
                           }
+                          else if (topic == topics.stream_start)
+                          {
+                            sink.onStreamStart(messageOf<StreamStart>(instance));
+                          }
                           else
                           {
                             sink.onModelInfo(messageOf<ModelInfo>(instance));
@@ -319,11 +323,6 @@ void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
 void RecordedRun::readModelInfo(const std::function<void(const ModelInfo&)>& sink) const
 {
   implementation_->readAll<ModelInfo>(implementation_->topics.model_info, sink);
-}
-
-void RecordedRun::readStreamStart(const std::function<void(const StreamStart&)>& sink) const
-{
-  implementation_->readAll<StreamStart>(implementation_->topics.stream_start, sink);
 }
 
 void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress) const

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "contact_replay.h"
+#include "recorded_starts.h"
 #include "text.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/ros/conversions.h"
@@ -85,15 +86,11 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
   StreamRecorder recorder(history);
   StreamSimulation simulation(std::make_shared<const core::SwitchedModel>(recorded.parameters), limits);
   simulation.observe(recorder);
-  // Also those that the excitation does not show: after ~reset and ~pause.
-  std::map<std::pair<Stamp, std::uint64_t>, std::string> starts;
-  recording.readStreamStart(
-      [&](const StreamStart& start) {
-        starts[{fromTime(start.header.stamp), start.seq}] = start.reason;
-      });
+  const std::map<std::size_t, RecordedStart> starts = recordedStarts(recording);
   ContactReplay contact(recorded);
   RecordingSimulation result;
   Samples samples;
+  std::size_t index = 0;
   recording.readExcitation(
       [&](const BaseExcitation& block)
       {
@@ -104,11 +101,11 @@ RecordingSimulation simulateRecording(const RecordedRun& recording, const Record
           changed.contact = change.contact;
           simulation.setContact(std::make_shared<const core::SwitchedModel>(changed), change.seq);
         }
-        const auto start = starts.find({samples.stamp, samples.seq});
-        if (start != starts.end() && result.samples > 0)
+        const auto start = starts.find(index++);
+        if (start != starts.end() && start->second.cause != StreamStart::RULE && result.samples > 0)
         {
           simulation.reset();
-          note({Verdict::Action::Restart, 0, start->second}, result);
+          note({Verdict::Action::Restart, 0, start->second.reason}, result);
         }
         const Verdict& verdict = simulation.advance(samples).verdict;
         note(verdict, result);

@@ -63,51 +63,6 @@ struct Account
   bool skips = false;         // has not had the last one
 };
 
-enum class Start
-{
-  of_the_same_simulator,
-  of_another_simulator
-};
-
-/// Where the simulators have started from rest, by their own account.
-class RecordedStarts
-{
-public:
-  explicit RecordedStarts(const RecordedRun& recording)
-  {
-    std::optional<StreamStart> last;
-    recording.readStreamStart(
-        [&](const StreamStart& start)
-        {
-          const bool is_repetition = last && start.number == last->number && start.seq == last->seq &&
-                                     start.header.stamp == last->header.stamp;
-          if (!is_repetition)
-          {
-            starts_[{fromTime(start.header.stamp), start.seq}].push_back(
-                last && start.number <= last->number ? Start::of_another_simulator : Start::of_the_same_simulator);
-            last = start;
-          }
-        });
-  }
-
-  /// The start with this block. Each is told once: another block with its number and time is a repetition, or that of
-  /// the next loop.
-  std::optional<Start> take(const Samples& block)
-  {
-    const auto found = starts_.find({block.stamp, block.seq});
-    if (found == starts_.end() || found->second.empty())
-    {
-      return std::nullopt;
-    }
-    const Start start = found->second.front();
-    found->second.pop_front();
-    return start;
-  }
-
-private:
-  std::map<std::pair<Stamp, std::uint64_t>, std::deque<Start>> starts_;
-};
-
 /// The blocks whose answers are missing on a topic, in stretches.
 class MissingAnswers
 {
@@ -148,11 +103,10 @@ class Replay : public RecordingSink
 {
 public:
   Replay(const RecordedTopics& topics, const RecordedAnswers& answers, std::vector<RecordedSimulator> simulators,
-         RecordedStarts starts, const StreamLimits& limits)
+         const StreamLimits& limits)
       : topics_(topics),
         answers_(answers),
         simulators_(std::move(simulators)),
-        starts_(std::move(starts)),
         limits_(limits),
         impacts_(topics.impact.empty() ? "impact" : topics.impact),
         missing_gaps_(topics.gap),
@@ -165,8 +119,13 @@ public:
 
   void onExcitation(const BaseExcitation& block) override
   {
+    const std::size_t index = read_++;
+    if (difference_)
+    {
+      return;
+    }
     waiting_.emplace_back();
-    waiting_.back().index = read_++;
+    waiting_.back().index = index;
     fromMessage(block, waiting_.back().samples);
     judgeWhatIsComplete();
   }
@@ -185,11 +144,26 @@ public:
   {
     const std::size_t hint = read_ > 0 ? read_ - 1 : 0;
     const std::size_t block = answers_.blockOf(impact.seq, impact.header.stamp, hint);
-    unplaced_.emplace_back(block == none ? hint : block, impact);
-    placeImpacts();
+    const std::size_t place = block == none ? hint : block;
+    if (place < decided_)
+    {
+      placeImpact(place, impact);
+    }
+    else if (difference_)
+    {
+      ++report_.impacts_not_compared;
+    }
+    else
+    {
+      unplaced_.emplace_back(place, impact);
+    }
   }
 
   void onModelInfo(const ModelInfo& /*info*/) override
+  {
+  }
+
+  void onStreamStart(const StreamStart& /*start*/) override
   {
   }
 
@@ -199,7 +173,7 @@ private:
   void take(const BlockHead& head, const std::vector<double>& values, std::size_t block,
             std::optional<Samples> Answers::*member)
   {
-    if (block != none)
+    if (block != none && !difference_)
     {
       recorded_[block].*member = Samples{fromTime(head.stamp), head.seq, head.sample_period, values};
       judgeWhatIsComplete();
@@ -207,34 +181,35 @@ private:
   }
 
   void judgeWhatIsComplete();
-  void judge(const Block& block, const Answers& recorded);
+  void judge(const Block& block, const Answers& recorded, bool is_known_start);
   void leaveUnanswered(const Block& block, bool is_start);
   bool settleUnanswered();
 
-  std::optional<Start> startOf(const Block& block);
-  void startAnew(const Block& block, Start start);
+  void startAnew(const Block& block, const RecordedStart& start);
   void leaveMotion(std::size_t next_block);
   void endMotion(std::size_t next_block, bool is_known);
-  std::vector<Account> atRest(Start start);
+  std::vector<Account> atRest(const std::set<std::size_t>& simulators);
+  std::set<std::size_t> simulatorsToCome() const;
   Verdict::Action feed(Account& account, const Block& block, const StreamSimulation::Answer** answer = nullptr);
-  Account* firstThatFits(std::vector<Account>& accounts, const Block& block, const Answers& recorded,
-                         std::optional<ReplayDifference>& difference);
-  void adopt(Account account, const Block& block, const Answers& recorded);
+  std::vector<Account> takeThoseThatFit(std::vector<Account>& accounts, const Block& block, const Answers& recorded,
+                                        std::optional<ReplayDifference>& difference);
+  void adopt(std::vector<Account> accounts, const Block& block, const Answers& recorded);
   void adopt(const Step& step);
 
-  std::string doubt(const Block& block) const;
+  std::string doubt(const Block& block, bool is_known_start) const;
   std::string missingBefore(const Block& block) const;
   void loseTrack(const Block& block, const std::string& reason);
   void closeLoss();
 
   void placeImpacts();
+  void placeImpact(std::size_t block, const Impact& impact);
   void noteMissing(std::size_t block, bool gap, bool force);
   std::shared_ptr<const core::SwitchedModel> model(std::size_t simulator, const core::ContactParameters& contact);
 
   RecordedTopics topics_;
   const RecordedAnswers& answers_;
   std::vector<RecordedSimulator> simulators_;
-  RecordedStarts starts_;
+  std::optional<std::uint64_t> missing_start_;  // running number of the one that should come next
   StreamLimits limits_;
   ReplayReport report_;
   ImpactComparison impacts_;
@@ -288,69 +263,78 @@ void Replay::judgeWhatIsComplete()
     }
     const Block block = std::move(waiting_.front());
     waiting_.pop_front();
-    const std::optional<Start> start = startOf(block);
-    if (start)
+    const bool starts_are_known = !topics_.stream_start.empty();
+    // Without a record of the starts the first block may be one; others show by what does not fit (judge()).
+    const RecordedStart first{StreamStart::FIRST, {}, true, {}};
+    const RecordedStart* start = starts_are_known ? answers_.startOf(index) : (index == 0 ? &first : nullptr);
+    if (start != nullptr)
     {
       startAnew(block, *start);
     }
     if (recorded == recorded_.end())
     {
-      leaveUnanswered(block, start.has_value());
+      leaveUnanswered(block, start != nullptr);
     }
     else
     {
       const Answers answers = std::move(recorded->second);
       recorded_.erase(recorded);
-      judge(block, answers);
+      judge(block, answers, starts_are_known && start != nullptr);
     }
   }
-}
-
-/// Without a record of the starts the first block may be one; others show by what does not fit (judge()).
-std::optional<Start> Replay::startOf(const Block& block)
-{
-  if (topics_.stream_start.empty())
-  {
-    return block.index == 0 ? std::optional<Start>(Start::of_the_same_simulator) : std::nullopt;
-  }
-  return starts_.take(block.samples);
 }
 
 /// By the rules of time a motion begins anew in its course; by a reset, a pause or in another simulator, aside from it.
-void Replay::startAnew(const Block& block, Start start)
+void Replay::startAnew(const Block& block, const RecordedStart& start)
 {
-  std::vector<Account> restarting;
-  for (const Account& account : accounts_)
+  missing_start_ = start.missing_next;
+  if (start.cause == StreamStart::RULE)
   {
-    Account trial = account;
-    if (start == Start::of_the_same_simulator && feed(trial, block) == Verdict::Action::Restart)
+    std::vector<Account> restarting;
+    for (const Account& account : accounts_)
     {
-      restarting.push_back(account);
-      restarting.back().skips = false;
+      Account trial = account;
+      if (feed(trial, block) == Verdict::Action::Restart)
+      {
+        restarting.push_back(account);
+        restarting.back().skips = false;
+      }
+    }
+    if (!restarting.empty())
+    {
+      accounts_ = std::move(restarting);
+      return;
     }
   }
-  if (!restarting.empty())
+  std::set<std::size_t> simulators =
+      start.of_another_simulator ? simulatorsToCome() : std::set<std::size_t>{simulator_};
+  for (const Account& account : accounts_)
   {
-    accounts_ = std::move(restarting);
-    return;
+    simulators.insert(account.simulator);
   }
   leaveMotion(block.index);
-  accounts_ = atRest(start);
+  accounts_ = atRest(simulators);
 }
 
-/// The present simulator and those to come: one that had no block told its model nonetheless, and one that tells the
+/// The present one and those behind it: one that had no block has told its model nonetheless, and one that tells the
 /// same model as the one before it is taken for a repetition (recordedSimulators()).
-std::vector<Account> Replay::atRest(Start start)
+std::set<std::size_t> Replay::simulatorsToCome() const
+{
+  std::set<std::size_t> simulators;
+  for (std::size_t simulator = simulator_; simulator < simulators_.size(); ++simulator)
+  {
+    simulators.insert(simulators.end(), simulator);
+  }
+  return simulators;
+}
+
+std::vector<Account> Replay::atRest(const std::set<std::size_t>& simulators)
 {
   std::vector<Account> accounts;
-  for (std::size_t simulator = simulator_; simulator < simulators_.size(); ++simulator)
+  for (const std::size_t simulator : simulators)
   {
     const ContactReplay contact = simulator == simulator_ ? contact_ : ContactReplay(simulators_[simulator].model);
     accounts.push_back({{model(simulator, contact.contact()), limits_}, contact, simulator, {}, 0, false});
-  }
-  if (start == Start::of_another_simulator)
-  {
-    std::rotate(accounts.begin(), accounts.begin() + 1, accounts.end());
   }
   return accounts;
 }
@@ -385,32 +369,31 @@ Verdict::Action Replay::feed(Account& account, const Block& block, const StreamS
   return action;
 }
 
-void Replay::judge(const Block& block, const Answers& recorded)
+void Replay::judge(const Block& block, const Answers& recorded, bool is_known_start)
 {
   std::optional<ReplayDifference> difference;
   std::vector<Account> before;
-  std::vector<Account> resting;
   const bool starts_are_known = !topics_.stream_start.empty();
   if (!starts_are_known)
   {
     before = accounts_;
   }
-  Account* account = firstThatFits(accounts_, block, recorded, difference);
-  if (account == nullptr && !starts_are_known)
+  std::vector<Account> fitting = takeThoseThatFit(accounts_, block, recorded, difference);
+  if (fitting.empty() && !starts_are_known)
   {
-    resting = atRest(Start::of_the_same_simulator);
-    account = firstThatFits(resting, block, recorded, difference);
-    if (account != nullptr)
+    std::vector<Account> resting = atRest(simulatorsToCome());
+    fitting = takeThoseThatFit(resting, block, recorded, difference);
+    if (!fitting.empty())
     {
       accounts_ = std::move(before);
       leaveMotion(block.index);
     }
   }
-  if (account != nullptr)
+  if (!fitting.empty())
   {
-    adopt(std::move(*account), block, recorded);
+    adopt(std::move(fitting), block, recorded);
   }
-  else if (const std::string reason = doubt(block); !reason.empty())
+  else if (const std::string reason = doubt(block, is_known_start); !reason.empty())
   {
     loseTrack(block, reason);
   }
@@ -418,6 +401,8 @@ void Replay::judge(const Block& block, const Answers& recorded)
   {
     difference_ = difference;
     difference_block_ = block.index;
+    waiting_.clear();
+    recorded_.clear();
     return;
   }
   unanswered_.clear();
@@ -425,12 +410,18 @@ void Replay::judge(const Block& block, const Answers& recorded)
   placeImpacts();
 }
 
-/// The first account that explains the recorded answers; none: `difference` is that of the first.
-Account* Replay::firstThatFits(std::vector<Account>& accounts, const Block& block, const Answers& recorded,
-                               std::optional<ReplayDifference>& difference)
+/// The accounts that explain the recorded answers, one for each simulator: two models may be told apart by later
+/// answers only, such as before the first contact. None: `difference` is that of the first.
+std::vector<Account> Replay::takeThoseThatFit(std::vector<Account>& accounts, const Block& block,
+                                              const Answers& recorded, std::optional<ReplayDifference>& difference)
 {
+  std::vector<Account> fitting;
   for (Account& account : accounts)
   {
+    if (!fitting.empty() && fitting.back().simulator == account.simulator)
+    {
+      continue;
+    }
     const StreamSimulation::Answer* answer = nullptr;
     std::optional<ReplayDifference> found;
     if (feed(account, block, &answer) == Verdict::Action::Refuse)
@@ -448,11 +439,11 @@ Account* Replay::firstThatFits(std::vector<Account>& accounts, const Block& bloc
     }
     if (!found)
     {
-      return &account;
+      fitting.push_back(std::move(account));
     }
     difference = difference ? difference : found;
   }
-  return nullptr;
+  return fitting;
 }
 
 /// The first block without an answer is where the accounts part: one has it and what follows, the other has not.
@@ -512,7 +503,7 @@ std::string Replay::missingBefore(const Block& block) const
 }
 
 /// Why the motion before a block may be another one than is known here; empty: there is no reason.
-std::string Replay::doubt(const Block& block) const
+std::string Replay::doubt(const Block& block, bool is_known_start) const
 {
   const std::uint64_t seq = block.samples.seq;
   const RecordedSimulator& simulator = simulators_[simulator_];
@@ -524,6 +515,14 @@ std::string Replay::doubt(const Block& block) const
   if (const auto missing = simulator.missing.find(contact_.told()); missing != simulator.missing.end())
   {
     return text("topic ", topics_.model_info, ": number ", missing->second, " is missing");
+  }
+  if (is_known_start)
+  {
+    return {};
+  }
+  if (missing_start_)
+  {
+    return text("topic ", topics_.stream_start, ": number ", *missing_start_, " is missing");
   }
   if (!unanswered_.empty())
   {
@@ -591,8 +590,9 @@ void Replay::noteMissing(std::size_t block, bool gap, bool force)
 }
 
 /// What explains the recorded answers is what there was.
-void Replay::adopt(Account account, const Block& block, const Answers& recorded)
+void Replay::adopt(std::vector<Account> accounts, const Block& block, const Answers& recorded)
 {
+  const Account& account = accounts.front();
   closeLoss();
   for (const Step& step : account.steps)
   {
@@ -609,14 +609,15 @@ void Replay::adopt(Account account, const Block& block, const Answers& recorded)
     report_.samples += block.samples.values.size();
   }
   report_.not_taken += account.skipped;
-  account.steps.clear();
-  account.skipped = 0;
-  account.skips = false;
   contact_ = account.contact;
   simulator_ = account.simulator;
-  std::vector<Account> only;
-  only.push_back(std::move(account));
-  accounts_ = std::move(only);
+  accounts_ = std::move(accounts);
+  for (Account& present : accounts_)
+  {
+    present.steps.clear();
+    present.skipped = 0;
+    present.skips = false;
+  }
 }
 
 void Replay::adopt(const Step& step)
@@ -657,22 +658,26 @@ void Replay::placeImpacts()
 {
   const auto is_placed = [this](const std::pair<std::size_t, Impact>& entry)
   {
-    const auto& [block, impact] = entry;
-    if (block >= decided_)
+    const bool is_decided = entry.first < decided_;
+    if (is_decided)
     {
-      return false;
+      placeImpact(entry.first, entry.second);
     }
-    if (run_of_[block] != 0)
-    {
-      impacts_.addRecorded(run_of_[block], impact, block);
-    }
-    else
-    {
-      ++report_.impacts_not_compared;
-    }
-    return true;
+    return is_decided;
   };
   unplaced_.erase(std::remove_if(unplaced_.begin(), unplaced_.end(), is_placed), unplaced_.end());
+}
+
+void Replay::placeImpact(std::size_t block, const Impact& impact)
+{
+  if (run_of_[block] != 0)
+  {
+    impacts_.addRecorded(run_of_[block], impact, block);
+  }
+  else
+  {
+    ++report_.impacts_not_compared;
+  }
 }
 
 /// Blocks whose fate no later answer tells. Returns whether the motion behind them is known.
@@ -778,7 +783,7 @@ ReplayReport checkReplay(const RecordedRun& recording, const StreamLimits& limit
   {
     throw config::Error("topic " + recording.topics().model_info + ": holds no message");
   }
-  Replay replay(recording.topics(), answers, std::move(simulators), RecordedStarts(recording), limits);
+  Replay replay(recording.topics(), answers, std::move(simulators), limits);
   recording.read(replay, share(first_reading, 1.0));
   return replay.finish();
 }

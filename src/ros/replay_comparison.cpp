@@ -187,6 +187,7 @@ void ImpactComparison::noteMissing(ReplayReport& report) const
   const Entry* first = nullptr;
   const Entry* last = nullptr;
   std::uint64_t count = 0;
+  std::uint64_t run = 0;
   const auto flush = [&]
   {
     if (count > 0)
@@ -204,12 +205,13 @@ void ImpactComparison::noteMissing(ReplayReport& report) const
     {
       continue;
     }
-    if (count > 0 && entry.impact.number != last->impact.number + 1)
+    if (count > 0 && (std::get<0>(key) != run || entry.impact.number != last->impact.number + 1))
     {
       flush();
     }
     first = count == 0 ? &entry : first;
     last = &entry;
+    run = std::get<0>(key);
     ++count;
   }
   flush();

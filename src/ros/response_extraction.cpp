@@ -117,6 +117,9 @@ public:
     }
   }
 
+  void onStreamStart(const StreamStart& /*start*/) override
+  {
+  }
   void onModelInfo(const ModelInfo& info) override
   {
     contacts_.add(info);

@@ -102,7 +102,7 @@ void Simulator::finish()
   {
     server->shutdown();
   }
-  publish(rest("the stream ended"));
+  publish(rest(StreamStart::RESET, "the stream ended"));
   ros::WallDuration(linger).sleep();
 }
 
@@ -148,15 +148,16 @@ void Simulator::onSecondPublisher(const std::string& source, const std::string& 
                  input_.topic().c_str(), source.c_str(), second.c_str());
 }
 
-const StreamSimulation::Answer& Simulator::rest(const std::string& reason)
+const StreamSimulation::Answer& Simulator::rest(std::uint8_t cause, const std::string& reason)
 {
+  start_cause_ = cause;
   start_reason_ = reason;
   return simulation_.reset();
 }
 
 bool Simulator::onReset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response)
 {
-  const StreamSimulation::Answer& answer = rest("reset");
+  const StreamSimulation::Answer& answer = rest(StreamStart::RESET, "reset");
   model_statistics_.countReset(answer);
   publish(answer);
   response.success = true;
@@ -176,7 +177,7 @@ bool Simulator::onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::
   response.message = "goes on from rest with the next block";
   if (paused_)
   {
-    const StreamSimulation::Answer& answer = rest("paused until then");
+    const StreamSimulation::Answer& answer = rest(StreamStart::PAUSE, "paused until then");
     model_statistics_.count(answer);
     publish(answer);
     response.message = answer.impacts.empty() ? "paused" : "paused; an open impact was cut short";
@@ -256,6 +257,7 @@ void Simulator::publishStart(const StreamSimulation::Answer& answer)
   start.seq = answer.gap.seq;
   start.sample_period = answer.gap.sample_period;
   start.number = starts_++;
+  start.cause = restarted ? std::uint8_t{StreamStart::RULE} : start_cause_;
   start.reason = restarted ? answer.verdict.reason : start_reason_;
   stream_start_publisher_.publish(start);
 }

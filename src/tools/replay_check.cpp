@@ -72,7 +72,7 @@ void printCounts(const graph::ReplayReport& report)
   std::cout << report.starts << (report.starts == 1 ? " start" : " starts") << " from rest";
   if (report.unannounced > 0)
   {
-    std::cout << " (" << report.unannounced << " by a reset or another simulator)";
+    std::cout << " (" << report.unannounced << " by a reset, a pause or another simulator)";
   }
   std::cout << ", " << report.contact_changes << " changes of the contact, " << report.bridged << " gaps bridged, "
             << report.refused << " blocks refused, " << report.not_taken << " not taken\n";

@@ -65,6 +65,9 @@ public:
   void onImpact(const vibro_impact::Impact& /*impact*/) override
   {
   }
+  void onStreamStart(const vibro_impact::StreamStart& /*start*/) override
+  {
+  }
   void onModelInfo(const vibro_impact::ModelInfo& /*info*/) override
   {
   }

@@ -73,6 +73,8 @@ class ControlTest(NodeProcessTest):
         numbers = [impact.number for impact in rig.messages["impact"]]
         self.assertEqual(starts[0].seq, rig.messages["gap"][0].seq)
         self.assertEqual([start.number for start in starts], list(range(len(starts))))
+        self.assertEqual(starts[0].cause, StreamStart.FIRST)
+        self.assertTrue({start.cause for start in starts[1:]} <= {StreamStart.RESET, StreamStart.PAUSE}, starts)
         self.assertTrue({start.reason for start in starts} <= {"first block", "reset", "paused until then"}, starts)
         self.assertTrue(all(b in (0, a + 1) for a, b in zip(numbers, numbers[1:])), numbers)
         cut_short = sum(impact.cut_short for impact in rig.messages["impact"])

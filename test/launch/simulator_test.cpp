@@ -581,6 +581,9 @@ struct Replay : graph::RecordingSink
   {
     impacts.push_back(impact);
   }
+  void onStreamStart(const vibro_impact::StreamStart& /*start*/) override
+  {
+  }
   void onModelInfo(const vibro_impact::ModelInfo& info) override
   {
     history.add(info);

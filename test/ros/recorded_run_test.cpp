@@ -38,6 +38,10 @@ public:
   {
     ++messages;
   }
+  void onStreamStart(const vibro_impact::StreamStart& /*start*/) override
+  {
+    ++messages;
+  }
   void onModelInfo(const vibro_impact::ModelInfo& /*info*/) override
   {
     ++messages;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../config/tool_test.h"
@@ -68,6 +69,7 @@ public:
     simulation_ = std::make_unique<StreamSimulation>(model, StreamLimits{});
     changes_ = 0;
     starts_ = 0;
+    cause_ = StreamStart::FIRST;
     ModelInfo info;
     toMessage(*model, config::toYaml(parameters), "0.0.0", info);
     write("model_info", info);
@@ -82,6 +84,7 @@ public:
 
   void reset()
   {
+    cause_ = StreamStart::RESET;
     writeImpacts(simulation_->reset());
   }
 
@@ -119,7 +122,8 @@ public:
   }
 
   /// The excitation reaches the simulator, but is not recorded.
-  void answer(const Samples& block, bool gap_is_recorded = true, bool force_is_recorded = true)
+  void answer(const Samples& block, bool gap_is_recorded = true, bool force_is_recorded = true,
+              bool impacts_are_recorded = false)
   {
     const StreamSimulation::Answer& answer = simulation_->advance(block);
     for (const StreamSimulation::ContactChange& change : answer.contact_changes)
@@ -136,7 +140,7 @@ public:
         write("model_info", info);
       }
     }
-    if (force_is_recorded)
+    if (force_is_recorded || impacts_are_recorded)
     {
       writeImpacts(answer);
     }
@@ -147,7 +151,12 @@ public:
       start.header.stamp = toTime(answer.gap.stamp);
       start.seq = answer.gap.seq;
       start.number = starts_++;
-      write("stream_start", start);  // latched: also a recorder that comes later has it
+      start.cause = action == Verdict::Action::Restart ? std::uint8_t{StreamStart::RULE} : cause_;
+      // It is latched: also a recorder that comes later has it.
+      if (!std::exchange(next_start_is_lost, false))
+      {
+        write("stream_start", start);
+      }
     }
     if (force_is_recorded && !answer.force.values.empty())
     {
@@ -159,8 +168,18 @@ public:
     {
       Gap gap;
       toMessage(answer.gap, gap);
+      if (std::exchange(next_gap_is_spoilt, false))
+      {
+        flip(gap.gap[7]);
+      }
       write("gap", gap);
     }
+  }
+
+  /// The recorder has only come now, and hears what is latched: the model of a simulator without changes.
+  void forget()
+  {
+    messages_.resize(1);
   }
 
   void writeTo(const std::string& path) const
@@ -175,12 +194,16 @@ public:
 
   bool change_is_recorded = true;
   bool starts_are_recorded = true;
+  bool next_start_is_lost = false;
+  bool next_gap_is_spoilt = false;
+  std::size_t cut_short = 0;  ///< impacts so far
 
 private:
   void writeImpacts(const StreamSimulation::Answer& answer)
   {
     for (const StampedImpact& impact : answer.impacts)
     {
+      cut_short += impact.impact.cut_short ? 1 : 0;
       Impact message;
       toMessage(impact, message);
       write("impact", message);
@@ -197,6 +220,7 @@ private:
   std::unique_ptr<StreamSimulation> simulation_;
   std::uint64_t changes_ = 0;
   std::uint64_t starts_ = 0;
+  std::uint8_t cause_ = StreamStart::FIRST;
   std::vector<std::function<void(rosbag::Bag&, const ros::Time&)>> messages_;
 };
 
@@ -438,7 +462,7 @@ TEST_F(ReplayCheck, FollowsAResetAndAnotherSimulator)
     recorder.play(8000, 10000);
     const Outcome outcome = check(recorder);
     expectIdentical(outcome, "25 blocks, 10000 samples, ");
-    EXPECT_THAT(outcome.out, HasSubstr("4 starts from rest (3 by a reset or another simulator)"));
+    EXPECT_THAT(outcome.out, HasSubstr("4 starts from rest (3 by a reset, a pause or another simulator)"));
   }
 }
 
@@ -456,7 +480,157 @@ TEST_F(ReplayCheck, FollowsSimulatorsOfOneModelOrWithoutABlock)
   recorder.play(4000, 6000);
   const Outcome outcome = check(recorder);
   expectIdentical(outcome, "15 blocks, 6000 samples, ");
-  EXPECT_THAT(outcome.out, HasSubstr("3 starts from rest (2 by a reset or another simulator)"));
+  EXPECT_THAT(outcome.out, HasSubstr("3 starts from rest (2 by a reset, a pause or another simulator)"));
+}
+
+TEST_F(ReplayCheck, TellsTheStartsOfALoopedBagApart)
+{
+  Recorder reset_in_the_second(parameters_);
+  reset_in_the_second.play(0, 4000);
+  reset_in_the_second.play(0, 2000);
+  reset_in_the_second.reset();
+  reset_in_the_second.play(2000, 4000);
+  expectIdentical(check(reset_in_the_second), "20 blocks");
+
+  Recorder killed_in_the_second(parameters_);
+  killed_in_the_second.play(0, 4000);
+  killed_in_the_second.play(0, 1200);
+  killed_in_the_second.record(Recorder::block(1200));
+  killed_in_the_second.record(Recorder::block(1600));
+  killed_in_the_second.startSimulator(parameters_);
+  killed_in_the_second.play(2000, 4000);
+  expectIncomplete(killed_in_the_second, "18 blocks", "topic gap: seq 1200 to 1999 (2 blocks) is missing");
+
+  Recorder late(parameters_);
+  late.answer(Recorder::block(0), false, false);
+  late.reset();
+  late.forget();
+  late.answer(Recorder::block(2000), false, false);  // only its start is recorded, which is latched
+  late.play(2400, 4000);
+  late.play(0, 4000);
+  expectIncomplete(late, "10 blocks", "4 blocks from seq 2400 to 3999 cannot be recomputed");
+
+  core::SystemParameters other = parameters_;
+  other.contact.stiffness = 5.0e4;
+  Recorder to_another(parameters_);
+  to_another.play(0, 4000);
+  to_another.startSimulator(other);
+  to_another.play(0, 4000);
+  expectIdentical(check(to_another), "20 blocks");
+}
+
+TEST_F(ReplayCheck, PlacesImpactsThatALoopCutsShort)
+{
+  bool one_is_cut_short = false;
+  for (std::uint64_t end = 2800; end <= 8400; end += block_size)
+  {
+    Recorder recorder(parameters_);
+    recorder.play(0, end);
+    recorder.play(0, end);
+    recorder.play(0, end);
+    recorder.reset();
+    const Outcome outcome = check(recorder);
+    EXPECT_THAT(outcome.out, StartsWith("identical: ")) << end << outcome.error;
+    one_is_cut_short = one_is_cut_short || recorder.cut_short > 0;
+  }
+  EXPECT_TRUE(one_is_cut_short);
+}
+
+TEST_F(ReplayCheck, FindsADifferenceInTheFirstBlockOfALaterStart)
+{
+  Recorder recorder(parameters_);
+  recorder.play(0, 2000);
+  recorder.next_gap_is_spoilt = true;
+  recorder.play(0, 2000, 2000.0);
+  expectDifference(check(recorder, " --allow-gaps"), "topic gap, block of seq 0, sample 7");
+}
+
+TEST_F(ReplayCheck, TakesABlockThatIsSentAgainCorrected)
+{
+  Recorder recorder(parameters_);
+  recorder.play(0, 2000);
+  Samples bad = Recorder::block(2000);
+  bad.values[7] = NAN;
+  recorder.play(bad);
+  recorder.play(2000, 4000);
+  expectIdentical(check(recorder), "10 blocks");
+}
+
+TEST_F(ReplayCheck, SaysWhichStartIsMissing)
+{
+  Recorder recorder(parameters_);
+  recorder.play(0, 2000);
+  recorder.reset();
+  recorder.next_start_is_lost = true;
+  recorder.play(2000, 4000);
+  recorder.reset();
+  recorder.play(4000, 6000);
+  expectIncomplete(recorder, "10 blocks", "topic stream_start: number 1 is missing");
+}
+
+TEST_F(ReplayCheck, NamesLostAnswersBeforeAReset)
+{
+  for (std::uint64_t at = 1200; at <= 6000; at += block_size)
+  {
+    Recorder recorder(parameters_);
+    recorder.play(0, at);
+    for (std::uint64_t seq = at; seq < at + 1200; seq += block_size)
+    {
+      recorder.record(Recorder::block(seq));
+      recorder.answer(Recorder::block(seq), false, false, true);
+    }
+    recorder.reset();
+    recorder.play(at + 1200, at + 4000);
+    expectIncomplete(recorder, "blocks", "(3 blocks) is missing");
+  }
+}
+
+TEST_F(ReplayCheck, TellsModelsApartAtTheFirstContact)
+{
+  // Before that, the stiffness of the contact shows in no answer.
+  parameters_.contact.clearance = 1.0e-5;
+  core::SystemParameters other = parameters_;
+  other.contact.stiffness = 5.0e4;
+  const auto play = [](Recorder& recorder, std::uint64_t from, std::uint64_t to)
+  {
+    Samples soft = Recorder::block(from);
+    for (double& value : soft.values)
+    {
+      value *= 1.0e-4;
+    }
+    recorder.play(soft);
+    recorder.play(from + block_size, to);
+  };
+  for (const bool starts_are_recorded : {true, false})
+  {
+    Recorder recorder(parameters_);
+    recorder.starts_are_recorded = starts_are_recorded;
+    play(recorder, 0, 2000);
+    recorder.startSimulator(parameters_);
+    play(recorder, 2000, 4000);
+    recorder.startSimulator(other);
+    play(recorder, 4000, 6000);
+    recorder.reset();
+    play(recorder, 6000, 8000);
+    expectIdentical(check(recorder), "20 blocks");
+  }
+  Recorder recorder(parameters_);
+  recorder.startSimulator(other);  // the first had no block
+  play(recorder, 0, 4000);
+  expectIdentical(check(recorder), "10 blocks");
+}
+
+TEST_F(ReplayCheck, CountsNoStartTwice)
+{
+  Recorder recorder(parameters_);
+  recorder.play(0, 2000);
+  recorder.startSimulator(parameters_);
+  recorder.play(2000, 4000);
+  recorder.play(0, 2000, 2000.0);
+  recorder.play(0, 2000, 3000.0);
+  const Outcome outcome = check(recorder);
+  expectIdentical(outcome, "20 blocks");
+  EXPECT_THAT(outcome.out, HasSubstr("4 starts from rest (1 by"));
 }
 
 TEST_F(ReplayCheck, KnowsAStartBeforeTheFirstAnswerThatIsRecorded)
@@ -513,7 +687,8 @@ TEST_F(ReplayCheck, FindsASimulatorWhoseFirstAnswersAreNotRecorded)
     recorder.answer(Recorder::block(seq), false, false);  // the recorder is not yet connected
   }
   recorder.play(4400, 8000);
-  expectIncomplete(recorder, "14 blocks, 5600 samples, ", "2 starts from rest (1 by a reset or another simulator)");
+  expectIncomplete(recorder, "14 blocks, 5600 samples, ",
+                   "2 starts from rest (1 by a reset, a pause or another simulator)");
   EXPECT_THAT(run(bag()).out, HasSubstr("not compared: topic gap: seq 2000 to 4399 (6 blocks) is missing\n"));
 }
 

@@ -285,6 +285,8 @@ TEST_F(Simulate, BeginsAnewWhereTheRecordingSaysSo)
     start.header.stamp = SyntheticRun::stampOf(seq, sample_period);
     start.seq = seq;
     start.sample_period = sample_period;
+    start.number = recording.starts.size();
+    start.cause = seq == 0 ? StreamStart::FIRST : StreamStart::RESET;
     start.reason = seq == 0 ? "first block" : "reset";
     recording.starts.push_back(start);
   }

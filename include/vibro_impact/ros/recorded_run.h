@@ -39,6 +39,7 @@ public:
                               const std::vector<double>& force) = 0;  ///< `force`: its samples, N
   virtual void onImpact(const Impact& impact) = 0;
   virtual void onModelInfo(const ModelInfo& info) = 0;
+  virtual void onStreamStart(const StreamStart& start) = 0;
 };
 
 /// The topics of a run in a recording, found by the types of their messages; empty where there is none.
@@ -84,9 +85,6 @@ public:
 
   /// Reads model_info alone.
   void readModelInfo(const std::function<void(const ModelInfo&)>& sink) const;
-
-  /// Reads stream_start alone.
-  void readStreamStart(const std::function<void(const StreamStart&)>& sink) const;
 
   /// Reads the excitation alone.
   void readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress = {}) const;

@@ -32,7 +32,7 @@ struct ReplayReport
   std::uint64_t impacts = 0;
 
   std::uint64_t starts = 0;       ///< from rest
-  std::uint64_t unannounced = 0;  ///< those of them that the excitation does not show: a reset, another simulator
+  std::uint64_t unannounced = 0;  ///< those of them aside from the rules of time: a reset, a pause, another simulator
   std::uint64_t bridged = 0;      ///< gaps of the excitation
   std::uint64_t refused = 0;      ///< blocks that the rules of the stream refuse
   std::uint64_t not_taken = 0;    ///< blocks that others show the simulator never had

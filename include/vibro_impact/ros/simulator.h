@@ -52,7 +52,7 @@ private:
   void addDiagnostics();
   std::vector<const OutputQueue*> queues() const;
   /// The motion ends; `reason`: why the next one begins.
-  const StreamSimulation::Answer& rest(const std::string& reason);
+  const StreamSimulation::Answer& rest(std::uint8_t cause, const std::string& reason);
   void publish(const StreamSimulation::Answer& answer);
   void publishStart(const StreamSimulation::Answer& answer);
   /// What holds from sample `seq` on, at `stamp`.
@@ -65,6 +65,7 @@ private:
   ExtremesHold extremes_;
   bool paused_ = false;
   std::string start_reason_ = "first block";
+  std::uint8_t start_cause_ = StreamStart::FIRST;
   std::uint64_t starts_ = 0;
   LogThrottle refusals_;
   LogThrottle bridges_;
