@@ -54,24 +54,26 @@ std::vector<std::size_t> RecordedAnswers::match(const std::vector<PlacedBlock>& 
 
   std::vector<std::size_t> result(answers.size(), none);
   answered.assign(questions.size(), false);
-  // The nearest in the order of recording, among questions of a range that fit.
+  // The nearest in the order of recording, among questions of a range, in that order, that fit: outwards from the
+  // answer, as a looped bag asks the same again and again.
   const auto take = [&](std::size_t answer, auto first, auto last, const auto& fits)
   {
-    std::size_t best = none;
-    for (auto candidate = first; candidate != last; ++candidate)
+    const std::uint64_t position = answers[answer].position;
+    auto behind = std::lower_bound(first, last, position,
+                                   [&](std::size_t question, std::uint64_t value)
+                                   { return questions[question].position < value; });
+    auto before = behind;
+    while (before != first || behind != last)
     {
-      const std::uint64_t position = answers[answer].position;
-      if (!answered[*candidate] && fits(questions[*candidate].head) &&
-          (best == none ||
-           distance(questions[*candidate].position, position) < distance(questions[best].position, position)))
+      const bool is_before = behind == last || (before != first && position - questions[*(before - 1)].position <=
+                                                                       questions[*behind].position - position);
+      const std::size_t question = is_before ? *--before : *behind++;
+      if (!answered[question] && fits(questions[question].head))
       {
-        best = *candidate;
+        answered[question] = true;
+        result[answer] = question;
+        return;
       }
-    }
-    if (best != none)
-    {
-      answered[best] = true;
-      result[answer] = best;
     }
   };
   const auto by = [&](const std::vector<std::size_t>& order, const auto& key, const auto& value, std::size_t answer,
