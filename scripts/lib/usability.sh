@@ -17,6 +17,8 @@ check_usability()
   done
   echo "import of the messages from Python"
   /usr/bin/python3 -c 'import vibro_impact.msg; vibro_impact.msg.Impact()'
+  echo "import of the package from Python"
+  /usr/bin/python3 -c 'import vibro_impact; vibro_impact.read_bag'
 
   for launch_file in "${root}"/launch/*.launch; do
     launch_file="$(basename "${launch_file}")"

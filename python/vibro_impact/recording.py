@@ -1,0 +1,81 @@
+"""A recording in NumPy arrays."""
+
+import functools
+import os
+
+import numpy
+
+from vibro_impact import _recording
+
+
+class Recording:
+    """A run as it was recorded, its blocks joined on one axis of samples.
+
+    acceleration, gap, contact_force   of the base (m/s^2), between the surfaces (m), in the contact (N): float64, one
+                    value a sample, NaN where it is lost
+    time            of the samples, s: 0 at the first one
+    sample_period   s
+    first           number of the first sample in the stream that was recorded
+    start_stamp     time stamp of the first sample: (seconds, nanoseconds)
+    impacts         structured array, one element an impact, in the order of recording: number, onset (s on the axis of
+                    time, located between the samples), duration (s), impulse (N s), peak_force (N), peak_time (s from
+                    the onset), approach_speed, separation_speed (m/s), energy_lost (J), cut_short, dissipated,
+                    mapping_loss, base_work (J)
+    losses          list of (first sample, sample after the last one, what is missing), numbers as those of the stream
+    models          list of what the simulator computed with, from sample `seq` on: version, configuration (YAML text),
+                    free_frequencies, contact_frequencies (Hz), mapping_loss, seq, number
+    starts          list of the starts from rest: (number of the sample, cause, reason); cause is 'first', 'rule',
+                    'reset' or 'pause'
+    topics          names of the topics by quantity: base_excitation, gap, contact_force, impact, model_info,
+                    stream_start; empty where there is none
+    summary         blocks, samples, repeated (blocks recorded twice, left out), impacts, restarts (of the simulation)
+    """
+
+    def __init__(self, joined):
+        self.acceleration = joined.acceleration
+        self.gap = joined.gap
+        self.contact_force = joined.contact_force
+        self.sample_period = joined.sample_period
+        self.first = joined.first
+        self.start_stamp = joined.start_stamp
+        self.impacts = joined.impacts
+        self.losses = joined.losses
+        self.models = joined.models
+        self.starts = joined.starts
+        self.topics = joined.topics
+        self.summary = joined.summary
+
+    @functools.cached_property
+    def time(self):
+        """Of the samples, s: 0 at the first one."""
+        axis = numpy.arange(len(self.acceleration), dtype=float)
+        axis *= self.sample_period
+        return axis
+
+    def __repr__(self):
+        return "<Recording: %d samples of %g s, %d impacts, %d losses>" % (
+            len(self.acceleration),
+            self.sample_period,
+            len(self.impacts),
+            len(self.losses),
+        )
+
+
+def bag_paths(bags):
+    """The list of paths that one path or a list of them means; a path is a string or an os.PathLike."""
+    one = isinstance(bags, (str, bytes, os.PathLike))
+    return [os.fsdecode(path) for path in ([bags] if one else bags)]
+
+
+def read_bag(bags, namespace="", excitation="", stream=None, progress=None):
+    """Reads a recording: a bag, or the list of the bags of a split one. Returns a Recording.
+
+    namespace    the run to take from a recording of several, such as "/rig1"
+    excitation   the topic of the excitation, where several are recorded
+    stream       which of the streams to take (0, 1, ...) where the excitation restarts, jumps in time or changes its
+                 period: these have no common axis of samples, so that without this argument they are refused
+    progress     a function called with the share read, from 0 to 1, every 50 ms
+
+    Raises vibro_impact.Error if a bag is missing, damaged or holds no run.
+    """
+    return Recording(_recording.read(bag_paths(bags), namespace, excitation, stream, progress))
