@@ -4,13 +4,24 @@
     recording = vibro_impact.read_bag("run.bag")
     plot(recording.time, recording.gap)
 
+    model = vibro_impact.load_model("table1.yaml")
+    sweep = model.sweep(0.5, 2.0, points=100)
+    plot(sweep.responses["omega_star"], sweep.responses["impulse_mean"])
+
 The messages are in vibro_impact.msg and vibro_impact.srv, as in every package of ROS.
 """
 
 # Each name is imported when it is first used: who only wants a message does not load NumPy and the libraries.
 _WHERE = {
     "Error": "error",
+    "HarmonicRun": "_core",
+    "Model": "_core",
     "Recording": "recording",
+    "Simulation": "_core",
+    "Sweep": "_core",
+    "check_replay": "recording",
+    "extract_responses": "recording",
+    "load_model": "_core",
     "read_bag": "recording",
 }
 

@@ -79,3 +79,70 @@ def read_bag(bags, namespace="", excitation="", stream=None, progress=None):
     Raises vibro_impact.Error if a bag is missing, damaged or holds no run.
     """
     return Recording(_recording.read(bag_paths(bags), namespace, excitation, stream, progress))
+
+
+def extract_responses(
+    bags,
+    allow_gaps=False,
+    namespace="",
+    excitation="",
+    acceleration_tolerance=0.1,
+    shortest_step=4,
+    lowest_frequency=1.0,
+    progress=None,
+):
+    """The frequency response in the recording of a stepped-sine run, as the tool extract_frf finds it.
+
+    bags, namespace, excitation, progress   as in read_bag()
+    allow_gaps               leave out the steps where something is missing, rather than refuse the recording
+    acceleration_tolerance   how far the amplitude of a cycle may be off that of its step, relative
+    shortest_step            drive cycles that make a step
+    lowest_frequency         of a drive to look for, Hz
+
+    Returns an object with responses and impacts (structured arrays with the columns of frf.csv and impacts.csv),
+    left_out (list of (omega_star, first sample, sample after the last one, reason)), contacts (list of (first sample,
+    stiffness in N/m, clearance in m, number of responses)), losses and summary (as of a Recording). Raises
+    vibro_impact.Error where it cannot give a response.
+    """
+    return _recording.extract(
+        bag_paths(bags),
+        namespace,
+        excitation,
+        allow_gaps,
+        acceleration_tolerance,
+        shortest_step,
+        lowest_frequency,
+        progress,
+    )
+
+
+def check_replay(
+    bags,
+    namespace="",
+    excitation="",
+    max_acceleration=1.0e5,
+    max_bridged_gap=0.02,
+    max_step_back=0.1,
+    max_stamp_jitter=0.05,
+    progress=None,
+):
+    """Recomputes a recording from its excitation and its configuration and compares every bit, as replay_check does.
+
+    bags, namespace, excitation, progress   as in read_bag()
+    max_acceleration (m/s^2), max_bridged_gap, max_step_back, max_stamp_jitter (s)   of the simulator recorded
+
+    Returns an object with difference (None, or topic, place, field, recorded and recomputed of the first one),
+    complete (whether everything could be compared), what is identical (blocks, samples, impacts), what the stream did
+    (starts, unannounced, bridged, refused, not_taken, contact_changes) and what was not compared (losses,
+    impacts_not_compared). Raises vibro_impact.Error if the recording is damaged or holds no configuration.
+    """
+    return _recording.check(
+        bag_paths(bags),
+        namespace,
+        excitation,
+        max_acceleration,
+        max_bridged_gap,
+        max_step_back,
+        max_stamp_jitter,
+        progress,
+    )

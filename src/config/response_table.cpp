@@ -58,7 +58,7 @@ OutputFile responseTable(const std::vector<core::Response>& responses)
   return {"frf.csv", writeTable(response_columns, rows)};
 }
 
-OutputFile impactTable(const std::vector<core::Response>& responses)
+std::vector<ImpactRow> impactRows(const std::vector<core::Response>& responses)
 {
   std::vector<ImpactRow> rows;
   for (const core::Response& response : responses)
@@ -71,7 +71,12 @@ OutputFile impactTable(const std::vector<core::Response>& responses)
                       impact.dissipated, impact.mapping_loss, impact.base_work});
     }
   }
-  return {"impacts.csv", writeTable(impact_columns, rows)};
+  return rows;
+}
+
+OutputFile impactTable(const std::vector<core::Response>& responses)
+{
+  return {"impacts.csv", writeTable(impact_columns, impactRows(responses))};
 }
 
 std::vector<ResponseRow> readResponseTable(const std::string& path)

@@ -1,8 +1,14 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
 #include <pybind11/pybind11.h>
 
 #include "vibro_impact/config/error.h"
+#include "vibro_impact/config/number.h"
 
 namespace vibro_impact::python
 {
@@ -24,6 +30,41 @@ inline void registerErrors()
           PyErr_SetString(pybind11::module::import("vibro_impact.error").attr("Error").ptr(), error.what());
         }
       });
+}
+
+/// What the core refuses is an error of the user's.
+template <typename Function>
+auto withErrors(const Function& function)
+{
+  try
+  {
+    return function();
+  }
+  catch (const std::invalid_argument& error)
+  {
+    throw config::Error(error.what());
+  }
+}
+
+/// The value of an argument. Throws config::Error unless it lies in [least, greatest].
+inline double number(const std::string& name, double value, double least, double greatest)
+{
+  if (!(value >= least && value <= greatest))
+  {
+    throw config::Error(name + " is " + config::formatNumber(value) + ", must be a number from " +
+                        config::formatNumber(least) + " to " + config::formatNumber(greatest));
+  }
+  return value;
+}
+
+inline std::int64_t wholeNumber(const std::string& name, std::int64_t value, std::int64_t least, std::int64_t greatest)
+{
+  if (value < least || value > greatest)
+  {
+    throw config::Error(name + " is " + std::to_string(value) + ", must be a whole number from " +
+                        std::to_string(least) + " to " + std::to_string(greatest));
+  }
+  return value;
 }
 
 }  // namespace vibro_impact::python

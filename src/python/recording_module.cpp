@@ -12,10 +12,13 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "arrays.h"
 #include "errors.h"
 #include "pulse.h"
 #include "vibro_impact/ros/joined_recording.h"
 #include "vibro_impact/ros/recorded_run.h"
+#include "vibro_impact/ros/replay_check.h"
+#include "vibro_impact/ros/response_extraction.h"
 
 namespace py = pybind11;
 
@@ -23,24 +26,6 @@ namespace vibro_impact::python
 {
 namespace
 {
-/// An element of Recording.impacts.
-struct ImpactElement
-{
-  std::uint64_t number;
-  double onset;
-  double duration;
-  double impulse;
-  double peak_force;
-  double peak_time;
-  double approach_speed;
-  double separation_speed;
-  double energy_lost;
-  bool cut_short;
-  double dissipated;
-  double mapping_loss;
-  double base_work;
-};
-
 struct Joined
 {
   graph::RecordedTopics topics;
@@ -95,6 +80,58 @@ py::list lossesOf(const std::vector<graph::Loss>& losses)
   return list;
 }
 
+graph::Extraction extract(const std::vector<std::string>& bags, const std::string& name_space,
+                          const std::string& excitation, bool allow_gaps, double acceleration_tolerance,
+                          std::int64_t shortest_step, double lowest_frequency, const py::object& progress)
+{
+  graph::ExtractionOptions options;
+  options.allow_gaps = allow_gaps;
+  options.steps.amplitude_tolerance = number("acceleration_tolerance", acceleration_tolerance, 1.0e-3, 0.9);
+  options.steps.shortest_step = static_cast<int>(wholeNumber("shortest_step", shortest_step, 4, 1'000'000));
+  options.steps.lowest_frequency = number("lowest_frequency", lowest_frequency, 1.0e-3, 1.0e6);
+  Pulse pulse(progress);
+  const py::gil_scoped_release unlocked;
+  const graph::RecordedRun run(bags, name_space, graph::RecordedContents::whole_run, excitation);
+  return withErrors([&] { return graph::extractResponses(run, options, [&](double share) { pulse(share); }); });
+}
+
+graph::ReplayReport check(const std::vector<std::string>& bags, const std::string& name_space,
+                          const std::string& excitation, double max_acceleration, double max_bridged_gap,
+                          double max_step_back, double max_stamp_jitter, const py::object& progress)
+{
+  constexpr double longest_time = 60.0;
+  graph::StreamLimits limits;
+  limits.max_acceleration = number("max_acceleration", max_acceleration, 1.0e-300, 1.0e9);
+  limits.max_bridged_gap = number("max_bridged_gap", max_bridged_gap, 0.0, longest_time);
+  limits.max_step_back = number("max_step_back", max_step_back, 0.0, longest_time);
+  limits.max_stamp_jitter = number("max_stamp_jitter", max_stamp_jitter, 1.0e-300, longest_time);
+  Pulse pulse(progress);
+  const py::gil_scoped_release unlocked;
+  const graph::RecordedRun run(bags, name_space, graph::RecordedContents::whole_run, excitation);
+  return withErrors([&] { return graph::checkReplay(run, limits, [&](double share) { pulse(share); }); });
+}
+
+py::list leftOut(const graph::Extraction& extraction)
+{
+  py::list list;
+  for (const graph::LeftOutStep& step : extraction.left_out)
+  {
+    list.append(py::make_tuple(step.omega_star, step.first, step.last, step.reason));
+  }
+  return list;
+}
+
+py::list contactsOf(const graph::Extraction& extraction)
+{
+  py::list list;
+  for (const graph::ContactSpan& span : extraction.contacts)
+  {
+    list.append(
+        py::make_tuple(span.from.seq, span.from.contact.stiffness, span.from.contact.clearance, span.responses));
+  }
+  return list;
+}
+
 py::list startsOf(const std::vector<StreamStart>& starts)
 {
   const auto cause = [](const StreamStart& start) -> std::string
@@ -135,9 +172,6 @@ py::dict topicsOf(const graph::RecordedTopics& topics)
 
 void defineRecording(py::module& module)
 {
-  PYBIND11_NUMPY_DTYPE(ImpactElement, number, onset, duration, impulse, peak_force, peak_time, approach_speed,
-                       separation_speed, energy_lost, cut_short, dissipated, mapping_loss, base_work);
-
   py::class_<graph::RecordingSummary>(module, "Summary", "What a recording has been found to hold.")
       .def_readonly("blocks", &graph::RecordingSummary::blocks, "of excitation, repetitions apart")
       .def_readonly("samples", &graph::RecordingSummary::samples, "of excitation")
@@ -149,24 +183,13 @@ void defineRecording(py::module& module)
       .def_readonly("version", &ModelInfo::version, "of the package that computed")
       .def_readonly("configuration", &ModelInfo::configuration, "the whole configuration as YAML text")
       .def_property_readonly(
-          "free_frequencies",
-          [](const ModelInfo& info) {
-            return py::array_t<double>(static_cast<py::ssize_t>(info.free_frequencies.size()),
-                                       info.free_frequencies.data());
-          },
+          "free_frequencies", [](const ModelInfo& info) { return copyOf(info.free_frequencies); },
           "natural frequencies out of contact, Hz")
       .def_property_readonly(
-          "contact_frequencies",
-          [](const ModelInfo& info)
-          {
-            return py::array_t<double>(static_cast<py::ssize_t>(info.contact_frequencies.size()),
-                                       info.contact_frequencies.data());
-          },
+          "contact_frequencies", [](const ModelInfo& info) { return copyOf(info.contact_frequencies); },
           "natural frequencies in contact, Hz")
       .def_property_readonly(
-          "mapping_loss",
-          [](const ModelInfo& info)
-          { return py::array_t<double>(static_cast<py::ssize_t>(info.mapping_loss.size()), info.mapping_loss.data()); },
+          "mapping_loss", [](const ModelInfo& info) { return copyOf(info.mapping_loss); },
           "share of a unit coordinate's energy that the mapping into contact loses, one per free frequency, 1")
       .def_readonly("seq", &ModelInfo::seq, "number of the first sample it holds for; 0: from the start")
       .def_readonly("number", &ModelInfo::number, "how often the contact had been changed");
@@ -189,6 +212,52 @@ void defineRecording(py::module& module)
       .def_property_readonly("topics", [](const Joined& self) { return topicsOf(self.topics); })
       .def_property_readonly("summary", [](const Joined& self) { return self.recording.summary; });
 
+  py::class_<graph::Extraction>(module, "Extraction", "The frequency response that a recording holds.")
+      .def_property_readonly(
+          "responses", [](const graph::Extraction& self) { return responseArray(self.responses); },
+          "structured array, the columns of frf.csv, one element a step of the drive, in order of time")
+      .def_property_readonly(
+          "impacts", [](const graph::Extraction& self) { return impactArray(self.responses); },
+          "structured array of the captured impacts, the columns of impacts.csv; onset_s from sample 0 of the stream")
+      .def_property_readonly("left_out", &leftOut,
+                             "steps not evaluated: list of (omega_star, first sample, sample after the last, reason)")
+      .def_property_readonly("contacts", &contactsOf,
+                             "list of (number of the first sample, stiffness in N/m, clearance in m, elements of "
+                             "responses), in order of time")
+      .def_property_readonly(
+          "losses", [](const graph::Extraction& self) { return lossesOf(self.recording.losses); }, "as of a Recording")
+      .def_property_readonly(
+          "summary", [](const graph::Extraction& self) { return self.recording; }, "as of a Recording");
+
+  py::class_<graph::ReplayDifference>(module, "Difference", "The first place where recorded and recomputed differ.")
+      .def_readonly("topic", &graph::ReplayDifference::topic)
+      .def_readonly("place", &graph::ReplayDifference::place, "numbers of the block and the sample, or of the impact")
+      .def_readonly("field", &graph::ReplayDifference::field, "of the message")
+      .def_readonly("recorded", &graph::ReplayDifference::recorded, "with 17 digits")
+      .def_readonly("recomputed", &graph::ReplayDifference::recomputed, "likewise");
+
+  py::class_<graph::ReplayReport>(module, "ReplayReport", "What came of recomputing a recording.")
+      .def_readonly("difference", &graph::ReplayReport::difference,
+                    "None, or the first Difference; nothing behind it has been compared")
+      .def_property_readonly("complete", &graph::ReplayReport::complete, "whether everything could be compared")
+      .def_readonly("blocks", &graph::ReplayReport::blocks, "of gap and contact force, identical bit for bit")
+      .def_readonly("samples", &graph::ReplayReport::samples, "of each, identical")
+      .def_readonly("impacts", &graph::ReplayReport::impacts, "identical")
+      .def_readonly("starts", &graph::ReplayReport::starts, "from rest")
+      .def_readonly("unannounced", &graph::ReplayReport::unannounced, "those of them aside from the rules of time")
+      .def_readonly("bridged", &graph::ReplayReport::bridged, "gaps of the excitation")
+      .def_readonly("refused", &graph::ReplayReport::refused, "blocks that the rules of the stream refuse")
+      .def_readonly("not_taken", &graph::ReplayReport::not_taken, "blocks that the simulator never had")
+      .def_readonly("contact_changes", &graph::ReplayReport::contact_changes)
+      .def_property_readonly(
+          "losses", [](const graph::ReplayReport& self) { return lossesOf(self.losses); }, "not compared")
+      .def_readonly("impacts_not_compared", &graph::ReplayReport::impacts_not_compared);
+
+  module.def("extract", &extract, py::arg("bags"), py::arg("namespace"), py::arg("excitation"), py::arg("allow_gaps"),
+             py::arg("acceleration_tolerance"), py::arg("shortest_step"), py::arg("lowest_frequency"),
+             py::arg("progress"));
+  module.def("check", &check, py::arg("bags"), py::arg("namespace"), py::arg("excitation"), py::arg("max_acceleration"),
+             py::arg("max_bridged_gap"), py::arg("max_step_back"), py::arg("max_stamp_jitter"), py::arg("progress"));
   module.def("read", &read, py::arg("bags"), py::arg("namespace"), py::arg("excitation"), py::arg("stream"),
              py::arg("progress"));
 }
@@ -199,6 +268,7 @@ PYBIND11_MODULE(_recording, module)
 {
   // What a library has to say of a damaged bag besides is in no message that a user understands.
   console_bridge::noOutputHandler();
-  vibro_impact::python::registerErrors();
+  // Registers the errors, and the elements of arrays that the two modules share.
+  pybind11::module::import("vibro_impact._core");
   vibro_impact::python::defineRecording(module);
 }

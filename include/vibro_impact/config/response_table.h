@@ -31,7 +31,10 @@ struct ImpactRow
 /// truth is 1 or 0, and every number reads back exactly.
 OutputFile responseTable(const std::vector<core::Response>& responses);
 
-/// impacts.csv: one row per captured impact, in the order of the responses.
+/// One row per captured impact, in the order of the responses.
+std::vector<ImpactRow> impactRows(const std::vector<core::Response>& responses);
+
+/// impacts.csv: these rows.
 OutputFile impactTable(const std::vector<core::Response>& responses);
 
 /// Read a table back. Columns are found by name; further ones are ignored. Throws Error if the file cannot be read,
