@@ -7,52 +7,11 @@
 #include <vector>
 
 #include "vibro_impact/core/parameters.h"
+#include "vibro_impact/core/sine_parameters.h"
+#include "vibro_impact/core/sweep_parameters.h"
 
 namespace vibro_impact::core
 {
-/// A sine of constant frequency and amplitude.
-struct SineParameters
-{
-  double acceleration = 0.0;         ///< amplitude, m/s^2, >= 0
-  double reference_frequency = 1.0;  ///< what the frequency is given in, Hz, > 0
-  double frequency = 0.0;            ///< times reference_frequency, > 0
-  double cycles = 0.0;               ///< > 0
-  double soft_start_cycles = 0.0;    ///< cosine ramp of the amplitude over the first cycles, from 0 to `cycles`
-};
-
-/// Steps of constant frequency, each of the same whole number of cycles, from a start frequency up or down to a stop
-/// frequency.
-struct SteppedSineParameters
-{
-  double acceleration = 0.0;         ///< amplitude of every step, m/s^2, >= 0
-  double reference_frequency = 1.0;  ///< what the frequencies are given in, Hz, > 0
-  double start_frequency = 0.0;      ///< times reference_frequency, > 0
-  double stop_frequency = 0.0;       ///< the same; the last step is the last one that does not lie beyond it
-  double frequency_step = 0.0;       ///< the same, > 0 also for steps downwards
-  std::int64_t cycles_per_step = 0;  ///< >= 1
-  double soft_start_cycles =
-      0.0;            ///< cosine ramp over the first cycles and after every rest, from 0 to `cycles_per_step`
-  double rest = 0.0;  ///< without drive between two steps, s, >= 0
-};
-
-enum class SweepLaw
-{
-  linear,      ///< constant rate in Hz/s
-  logarithmic  ///< constant rate in octaves per minute
-};
-
-/// A sine whose frequency glides from start to stop, up or down.
-struct SweptSineParameters
-{
-  SweepLaw law = SweepLaw::linear;
-  double acceleration = 0.0;         ///< amplitude, m/s^2, >= 0
-  double reference_frequency = 1.0;  ///< what the frequencies are given in, Hz, > 0
-  double start_frequency = 0.0;      ///< times reference_frequency, > 0
-  double stop_frequency = 0.0;       ///< the same, not the start frequency
-  double duration = 0.0;             ///< s, > 0
-  double soft_start_cycles = 0.0;    ///< cosine ramp over the first cycles, >= 0
-};
-
 using DriveParameters = std::variant<SineParameters, SteppedSineParameters, SweptSineParameters>;
 
 /// Every value that is out of range for a signal of `sample_rate` (Hz), with the members' names as keys. All
@@ -104,8 +63,5 @@ private:
 /// Throws std::invalid_argument if findFaults() finds any; the message names each parameter, its value and what is
 /// allowed.
 std::unique_ptr<const DriveSignal> makeDriveSignal(const DriveParameters& parameters, double sample_rate);
-
-/// The frequencies of the steps in their order, Hz.
-std::vector<double> stepFrequencies(const SteppedSineParameters& parameters);
 
 }  // namespace vibro_impact::core
