@@ -21,19 +21,46 @@ constexpr double step_tolerance = 1.0e-6;
 // Samples between two exact evaluations of the phase; in between, the rounding of a few hundred cycles is below 1e-13.
 constexpr std::uint64_t anchor_distance = 1024;
 
+// From one frequency to the other, both included where the last step meets it.
+double stepCount(double from, double to, double step)
+{
+  return std::floor(std::abs(to - from) / step + step_tolerance) + 1.0;
+}
+
 double stepCount(const SteppedSineParameters& parameters)
 {
-  const double range = std::abs(parameters.stop_frequency - parameters.start_frequency);
-  return std::floor(range / parameters.frequency_step + step_tolerance) + 1.0;
+  return stepCount(parameters.start_frequency, parameters.stop_frequency, parameters.frequency_step);
+}
+
+double stepCount(const SineDwellParameters& parameters)
+{
+  double count = 0.0;
+  for (const SineBand& band : parameters.bands)
+  {
+    count += stepCount(band.from, band.to, parameters.frequency_step);
+  }
+  return count;
+}
+
+std::vector<double> stepFrequencies(double from, double to, double step)
+{
+  std::vector<double> frequencies(static_cast<std::size_t>(stepCount(from, to, step)));
+  for (std::size_t i = 0; i < frequencies.size(); ++i)
+  {
+    frequencies[i] = from + static_cast<double>(i) * std::copysign(step, to - from);
+  }
+  return frequencies;
 }
 
 // A stretch of constant frequency that begins at phase zero.
 struct Segment
 {
-  std::uint64_t first = 0;         // sample
-  double lead = 0.0;               // from the begin of the stretch to its first sample, in samples
-  double frequency = 0.0;          // Hz; 0: no drive
-  double soft_start_cycles = 0.0;  // 0: none
+  std::uint64_t first = 0;   // sample
+  double lead = 0.0;         // from the begin of the stretch to its first sample, in samples
+  double frequency = 0.0;    // Hz; 0: no drive
+  double amplitude = 0.0;    // m/s^2
+  double ramp_cycles = 0.0;  // 0: none
+  double ramp_from = 0.0;    // amplitude where the ramp begins, m/s^2
 };
 
 struct Schedule
@@ -49,15 +76,15 @@ public:
   {
   }
 
-  void addSine(double frequency, double cycles, double soft_start_cycles)
+  void addSine(double frequency, double amplitude, double cycles, double ramp_cycles, double ramp_from = 0.0)
   {
-    segments_.push_back({position_.firstSample(), position_.lead(), frequency, soft_start_cycles});
+    segments_.push_back({position_.firstSample(), position_.lead(), frequency, amplitude, ramp_cycles, ramp_from});
     position_.advance(divide(cycles * sample_rate_, frequency));
   }
 
   void addRest(double seconds)
   {
-    segments_.push_back({position_.firstSample(), position_.lead(), 0.0, 0.0});
+    segments_.push_back({position_.firstSample(), position_.lead()});
     position_.advance(divide(seconds * sample_rate_, 1.0));
   }
 
@@ -75,7 +102,7 @@ private:
 Schedule schedule(const SineParameters& parameters, double sample_rate)
 {
   ScheduleBuilder builder(sample_rate);
-  builder.addSine(parameters.reference_frequency * parameters.frequency, parameters.cycles,
+  builder.addSine(parameters.reference_frequency * parameters.frequency, parameters.acceleration, parameters.cycles,
                   parameters.soft_start_cycles);
   return builder.take();
 }
@@ -91,9 +118,21 @@ Schedule schedule(const SteppedSineParameters& parameters, double sample_rate)
     {
       builder.addRest(parameters.rest);
     }
-    builder.addSine(frequency, static_cast<double>(parameters.cycles_per_step),
+    builder.addSine(frequency, parameters.acceleration, static_cast<double>(parameters.cycles_per_step),
                     first || rests ? parameters.soft_start_cycles : 0.0);
     first = false;
+  }
+  return builder.take();
+}
+
+Schedule schedule(const SineDwellParameters& parameters, double sample_rate)
+{
+  ScheduleBuilder builder(sample_rate);
+  double amplitude = 0.0;
+  for (const SineDwell& dwell : sineDwells(parameters))
+  {
+    builder.addSine(dwell.frequency, dwell.acceleration, dwell.cycles, parameters.ramp_cycles, amplitude);
+    amplitude = dwell.acceleration;
   }
   return builder.take();
 }
@@ -101,8 +140,8 @@ Schedule schedule(const SteppedSineParameters& parameters, double sample_rate)
 class SegmentedSine : public DriveSignal
 {
 public:
-  SegmentedSine(double acceleration, Schedule schedule, double sample_rate)
-      : DriveSignal(sample_rate, schedule.samples), acceleration_(acceleration), segments_(std::move(schedule.segments))
+  SegmentedSine(Schedule schedule, double sample_rate)
+      : DriveSignal(sample_rate, schedule.samples), segments_(std::move(schedule.segments))
   {
   }
 
@@ -147,11 +186,11 @@ private:
     for (; number < stop; ++number)
     {
       const double cycles = phase + static_cast<double>(number - anchor) * cycles_per_sample;
-      double amplitude = acceleration_;
-      if (segment.soft_start_cycles > 0.0)
+      double amplitude = segment.amplitude;
+      if (segment.ramp_cycles > 0.0)
       {
-        amplitude *=
-            softStart((static_cast<double>(number) + segment.lead) * cycles_per_sample, segment.soft_start_cycles);
+        const double done = (static_cast<double>(number) + segment.lead) * cycles_per_sample;
+        amplitude = segment.ramp_from + (amplitude - segment.ramp_from) * softStart(done, segment.ramp_cycles);
       }
       *acceleration++ = amplitude * sineOfCycles(cycles);
     }
@@ -168,7 +207,6 @@ private:
     return divide(product, sampleRate()).fraction + rest / sampleRate();
   }
 
-  double acceleration_;
   std::vector<Segment> segments_;
 };
 
@@ -212,26 +250,67 @@ void findFaults(const SteppedSineParameters& parameters, DriveFaults& faults)
   }
 }
 
+void findFaults(const SineDwellParameters& parameters, DriveFaults& faults)
+{
+  bool good = faults.checkBands(parameters.bands);
+  good &= faults.checkPositive("frequency_step", parameters.frequency_step, ", also for bands downwards (Hz)");
+  good &= faults.checkPositive("dwell", parameters.dwell, " (s)");
+  good &= faults.checkAmplitude("ramp_cycles", parameters.ramp_cycles, " (cycles)");
+  if (!good || !faults.check(stepCount(parameters) <= most_steps, "frequency_step", parameters.frequency_step,
+                             "large enough for at most " + text(most_steps) + " dwells"))
+  {
+    return;
+  }
+  double shortest = DriveFaults::infinity;
+  double duration = 0.0;
+  for (const SineDwell& dwell : sineDwells(parameters))
+  {
+    shortest = std::min(shortest, dwell.cycles);
+    duration += dwell.cycles / dwell.frequency;
+  }
+  faults.check(parameters.ramp_cycles <= shortest, "ramp_cycles", parameters.ramp_cycles,
+               "at most " + text(shortest) + ", the cycles of the shortest dwell");
+  faults.checkDuration(duration);
+}
+
 std::vector<double> stepFrequencies(const SteppedSineParameters& parameters)
 {
-  const auto count = static_cast<std::size_t>(stepCount(parameters));
-  const double step = std::copysign(parameters.frequency_step, parameters.stop_frequency - parameters.start_frequency);
-  std::vector<double> frequencies(count);
-  for (std::size_t i = 0; i < count; ++i)
+  std::vector<double> frequencies =
+      stepFrequencies(parameters.start_frequency, parameters.stop_frequency, parameters.frequency_step);
+  for (double& frequency : frequencies)
   {
-    frequencies[i] = parameters.reference_frequency * (parameters.start_frequency + static_cast<double>(i) * step);
+    frequency *= parameters.reference_frequency;
   }
   return frequencies;
 }
 
+std::vector<SineDwell> sineDwells(const SineDwellParameters& parameters)
+{
+  std::vector<SineDwell> dwells;
+  for (const SineBand& band : parameters.bands)
+  {
+    for (const double frequency : stepFrequencies(band.from, band.to, parameters.frequency_step))
+    {
+      const double cycles = std::max(1.0, std::ceil(parameters.dwell * frequency - step_tolerance));
+      dwells.push_back({frequency, accelerationAmplitude(band.amplitude, frequency), cycles});
+    }
+  }
+  return dwells;
+}
+
 std::unique_ptr<const DriveSignal> makeSignal(const SineParameters& parameters, double sample_rate)
 {
-  return std::make_unique<SegmentedSine>(parameters.acceleration, schedule(parameters, sample_rate), sample_rate);
+  return std::make_unique<SegmentedSine>(schedule(parameters, sample_rate), sample_rate);
 }
 
 std::unique_ptr<const DriveSignal> makeSignal(const SteppedSineParameters& parameters, double sample_rate)
 {
-  return std::make_unique<SegmentedSine>(parameters.acceleration, schedule(parameters, sample_rate), sample_rate);
+  return std::make_unique<SegmentedSine>(schedule(parameters, sample_rate), sample_rate);
+}
+
+std::unique_ptr<const DriveSignal> makeSignal(const SineDwellParameters& parameters, double sample_rate)
+{
+  return std::make_unique<SegmentedSine>(schedule(parameters, sample_rate), sample_rate);
 }
 
 }  // namespace vibro_impact::core

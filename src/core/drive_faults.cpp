@@ -66,6 +66,31 @@ bool DriveFaults::checkSoftStart(double value, double most, const std::string& n
   return check(std::isfinite(value) && value >= 0.0 && value <= most, "soft_start_cycles", value, allowed);
 }
 
+bool DriveFaults::checkBands(const std::vector<SineBand>& bands)
+{
+  bool good = check(!bands.empty(), "bands", 0.0, "a list of at least one band");
+  for (std::size_t i = 0; i < bands.size(); ++i)
+  {
+    const SineBand& band = bands[i];
+    const std::string path = "bands[" + std::to_string(i) + "].";
+    good &= checkFrequency(path + "from", band.from, 1.0);
+    good &= checkFrequency(path + "to", band.to, 1.0);
+    switch (band.amplitude.quantity)
+    {
+      case MotionQuantity::displacement:
+        good &= checkAmplitude(path + "displacement", band.amplitude.value, " (m)");
+        break;
+      case MotionQuantity::velocity:
+        good &= checkAmplitude(path + "velocity", band.amplitude.value, " (m/s)");
+        break;
+      case MotionQuantity::acceleration:
+        good &= checkAmplitude(path + "acceleration", band.amplitude.value, " (m/s^2)");
+        break;
+    }
+  }
+  return good;
+}
+
 bool DriveFaults::checkDuration(double seconds)
 {
   return !isPositive(sample_rate_) || check(seconds * sample_rate_ <= most_samples, "duration", seconds,

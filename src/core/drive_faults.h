@@ -6,6 +6,7 @@
 
 #include "parameter_faults.h"
 #include "vibro_impact/core/parameters.h"
+#include "vibro_impact/core/sine_band.h"
 
 namespace vibro_impact::core
 {
@@ -32,6 +33,8 @@ public:
   bool checkFrequency(const std::string& key, double value, double reference);
   /// `most`, if it is finite, is what `name_of_most` says.
   bool checkSoftStart(double value, double most, const std::string& name_of_most);
+  /// Ends and amplitude of each, at least one; not how they lie to one another.
+  bool checkBands(const std::vector<SineBand>& bands);
   /// Of the whole signal.
   bool checkDuration(double seconds);
 

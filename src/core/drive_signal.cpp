@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "drive_faults.h"
 #include "drive_signals.h"
@@ -9,6 +10,20 @@
 
 namespace vibro_impact::core
 {
+namespace
+{
+template <typename Family, typename = void>
+struct HasReference : std::false_type
+{
+};
+
+template <typename Family>
+struct HasReference<Family, std::void_t<decltype(Family::reference_frequency)>> : std::true_type
+{
+};
+
+}  // namespace
+
 void DriveSignal::generate(std::uint64_t first, std::size_t count, double* acceleration) const
 {
   if (first > samples_ || count > samples_ - first)
@@ -20,6 +35,20 @@ void DriveSignal::generate(std::uint64_t first, std::size_t count, double* accel
   {
     fill(first, count, acceleration);
   }
+}
+
+double referenceFrequency(const DriveParameters& parameters)
+{
+  return std::visit(
+      [](const auto& family)
+      {
+        if constexpr (HasReference<std::decay_t<decltype(family)>>::value)
+        {
+          return family.reference_frequency;
+        }
+        return 1.0;
+      },
+      parameters);
 }
 
 std::vector<ParameterFault> findFaults(const DriveParameters& parameters, double sample_rate)

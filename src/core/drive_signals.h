@@ -11,10 +11,20 @@ namespace vibro_impact::core
 
 void findFaults(const SineParameters& parameters, DriveFaults& faults);
 void findFaults(const SteppedSineParameters& parameters, DriveFaults& faults);
+void findFaults(const SineDwellParameters& parameters, DriveFaults& faults);
 void findFaults(const SweptSineParameters& parameters, DriveFaults& faults);
+void findFaults(const BandedSweepParameters& parameters, DriveFaults& faults);
+void findFaults(const RandomParameters& parameters, DriveFaults& faults);
+void findFaults(const ShockParameters& parameters, DriveFaults& faults);
+void findFaults(const SampledParameters& parameters, DriveFaults& faults);
 
 std::unique_ptr<const DriveSignal> makeSignal(const SineParameters& parameters, double sample_rate);
 std::unique_ptr<const DriveSignal> makeSignal(const SteppedSineParameters& parameters, double sample_rate);
+std::unique_ptr<const DriveSignal> makeSignal(const SineDwellParameters& parameters, double sample_rate);
 std::unique_ptr<const DriveSignal> makeSignal(const SweptSineParameters& parameters, double sample_rate);
+std::unique_ptr<const DriveSignal> makeSignal(const BandedSweepParameters& parameters, double sample_rate);
+std::unique_ptr<const DriveSignal> makeSignal(const RandomParameters& parameters, double sample_rate);
+std::unique_ptr<const DriveSignal> makeSignal(const ShockParameters& parameters, double sample_rate);
+std::unique_ptr<const DriveSignal> makeSignal(const SampledParameters& parameters, double sample_rate);
 
 }  // namespace vibro_impact::core

@@ -8,24 +8,13 @@
 #include <vector>
 
 #include "common.h"
+#include "signal_samples.h"
 #include "vibro_impact/core/drive_signal.h"
 #include "vibro_impact/core/quotient.h"
 
 namespace
 {
 using namespace vibro_impact::core;
-
-std::vector<double> generate(const DriveSignal& signal, std::uint64_t first, std::size_t count)
-{
-  std::vector<double> samples(count);
-  signal.generate(first, count, samples.data());
-  return samples;
-}
-
-std::vector<double> generate(const DriveSignal& signal)
-{
-  return generate(signal, 0, signal.samples());
-}
 
 SineParameters sine(double frequency, double cycles)
 {
@@ -56,16 +45,6 @@ SweptSineParameters sweep(SweepLaw law, double start, double stop, double durati
   parameters.stop_frequency = stop;
   parameters.duration = duration;
   return parameters;
-}
-
-std::string keysOf(const std::vector<ParameterFault>& faults)
-{
-  std::string keys;
-  for (const ParameterFault& fault : faults)
-  {
-    keys += (keys.empty() ? "" : " ") + fault.key;
-  }
-  return keys;
 }
 
 TEST(Quotient, keepsTheFractionBesideALargeWholePart)

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "vibro_impact/core/sine_band.h"
+
 namespace vibro_impact::core
 {
 /// A sine of constant frequency and amplitude.
@@ -30,7 +32,29 @@ struct SteppedSineParameters
   double rest = 0.0;  ///< without drive between two steps, s, >= 0
 };
 
+/// Dwells at frequencies at equal distances through one band after the other. Each lasts whole cycles, and begins at
+/// phase zero.
+struct SineDwellParameters
+{
+  std::vector<SineBand> bands;  ///< in their order, each upwards, downwards or of one frequency; at least one
+  double frequency_step = 1.0;  ///< Hz, > 0; the last one of a band is the last one that does not lie beyond `to`
+  double dwell = 0.0;           ///< at each frequency, s, > 0; rounded up to whole cycles
+  double ramp_cycles = 0.0;  ///< over the first cycles of each dwell the amplitude of the acceleration comes from that
+                             ///< of the one before, or from zero, by a cosine ramp; >= 0, shorter than each dwell
+};
+
+/// A dwell at one frequency.
+struct SineDwell
+{
+  double frequency = 0.0;     ///< Hz
+  double acceleration = 0.0;  ///< amplitude, m/s^2
+  double cycles = 0.0;        ///< a whole number
+};
+
 /// The frequencies of the steps in their order, Hz.
 std::vector<double> stepFrequencies(const SteppedSineParameters& parameters);
+
+/// The dwells in their order.
+std::vector<SineDwell> sineDwells(const SineDwellParameters& parameters);
 
 }  // namespace vibro_impact::core
