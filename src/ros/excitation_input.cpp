@@ -1,6 +1,5 @@
 #include "vibro_impact/ros/excitation_input.h"
 
-#include <array>
 #include <exception>
 
 #include <ros/message_traits.h>
@@ -18,15 +17,6 @@ namespace
 constexpr double waiting_period = 1.0;
 /// Between two words about that, waiting periods.
 constexpr int waiting_periods_per_line = 5;
-
-/// How messages call the value that is taken, sign included.
-std::string quantityOf(const InputParameters& parameters)
-{
-  static const std::array<const char*, 3> components = {"x", "y", "z"};
-  return text(parameters.axis.sign < 0.0 ? "-" : "",
-              parameters.kind == InputKind::imu ? "linear_acceleration." : "accel.linear.",
-              components[parameters.axis.component]);
-}
 
 std::size_t samplesIn(const BaseExcitation& message)
 {
@@ -60,13 +50,9 @@ ExcitationInput::ExcitationInput(const SimulatorParameters& parameters, Excitati
       max_input_age_(parameters.thresholds.max_input_age),
       sink_(sink),
       guard_(parameters.thresholds.max_input_age),
-      grid_(parameters.input.grid, parameters.limits, quantityOf(parameters.input)),
+      samples_(parameters.input, parameters.limits),
       type_(typeOf(parameters.input.kind))
 {
-  if (!parameters_.frame_id.empty())
-  {
-    frame_id_ = parameters_.frame_id;
-  }
 }
 
 template <typename Message>
@@ -139,45 +125,19 @@ void ExcitationInput::pass(const BaseExcitation& message)
   sink_.onExcitation(excitation_);
 }
 
-void ExcitationInput::pass(const geometry_msgs::AccelStamped& message)
+template <typename Message>
+void ExcitationInput::pass(const Message& message)
 {
-  pass(message.header, message.accel.linear);
-}
-
-void ExcitationInput::pass(const sensor_msgs::Imu& message)
-{
-  if (message.linear_acceleration_covariance[0] == -1.0)
-  {
-    sink_.onRefusal("linear_acceleration_covariance[0] is -1: the sensor gives no accelerations", 1);
-    return;
-  }
-  pass(message.header, message.linear_acceleration);
-}
-
-void ExcitationInput::pass(const std_msgs::Header& header, const geometry_msgs::Vector3& acceleration)
-{
-  if (!frame_id_)
-  {
-    frame_id_ = header.frame_id;
-  }
-  if (header.frame_id != *frame_id_)
-  {
-    sink_.onRefusal(text("header.frame_id is \"", header.frame_id, "\", must be \"", *frame_id_, "\", ",
-                         parameters_.frame_id.empty() ? "that of the first sample" : "as ~frame_id says"),
-                    1);
-    return;
-  }
-  const std::array<double, 3> components = {acceleration.x, acceleration.y, acceleration.z};
-  const bool was_measuring = grid_.measuring();
-  const SampleGrid::Answer& answer =
-      grid_.take(fromTime(header.stamp), parameters_.axis.sign * components[parameters_.axis.component]);
+  const SampleGrid& grid = samples_.grid();
+  const bool was_measuring = grid.measuring();
+  const SampleGrid::Answer& answer = samples_.take(message);
   if (answer.refused != 0)
   {
     sink_.onRefusal(answer.refusal, answer.refused);
   }
-  if (was_measuring && !grid_.measuring())
+  if (was_measuring && !grid.measuring())
   {
-    ROS_INFO("sample period %.9g s, offset %.9g m/s^2", *grid_.samplePeriod(), *grid_.offset());
+    ROS_INFO("sample period %.9g s, offset %.9g m/s^2", *grid.samplePeriod(), *grid.offset());
   }
   for (const Samples& block : answer.blocks)
   {
@@ -252,9 +212,9 @@ void ExcitationInput::report(diagnostic_updater::DiagnosticStatusWrapper& status
         status.add(key, "being measured");
       }
     };
-    measured("Sample period (s)", grid_.samplePeriod());
-    measured("Offset (m/s^2)", grid_.offset());
-    status.add("Frame", frame_id_.value_or("not known yet"));
+    measured("Sample period (s)", samples_.grid().samplePeriod());
+    measured("Offset (m/s^2)", samples_.grid().offset());
+    status.add("Frame", samples_.frameId().value_or("not known yet"));
   }
 }
 

@@ -187,6 +187,24 @@ std::optional<XmlRpcValue> ParameterReader::map(const std::string& key)
   return std::nullopt;
 }
 
+std::vector<ParameterReader> ParameterReader::maps(const std::string& key)
+{
+  const XmlRpcValue* value = find(key);
+  std::vector<ParameterReader> readers;
+  bool good = value != nullptr && value->getType() == XmlRpcValue::TypeArray && value->size() > 0;
+  for (int i = 0; good && i < value->size(); ++i)
+  {
+    good = (*value)[i].getType() == XmlRpcValue::TypeStruct;
+    readers.emplace_back((*value)[i], below(key) + "[" + std::to_string(i) + "]");
+  }
+  if (!good)
+  {
+    reject(key, "a list of maps, at least one");
+    return {};
+  }
+  return readers;
+}
+
 XmlRpcValue ParameterReader::take(const std::vector<std::string>& keys)
 {
   XmlRpcValue taken;
@@ -233,6 +251,11 @@ const XmlRpcValue* ParameterReader::find(const std::string& key)
 {
   known_.push_back(key);
   return has(key) ? &map_[key] : nullptr;
+}
+
+void ParameterReader::addFaults(const ParameterReader& part)
+{
+  faults_.insert(faults_.end(), part.faults_.begin(), part.faults_.end());
 }
 
 std::string ParameterReader::below(const std::string& key) const

@@ -40,19 +40,19 @@ std::string toClock(double seconds)
 std::string toText(const Progress& progress)
 {
   std::ostringstream stream = plainStream();
-  stream << std::setprecision(1) << std::setw(5) << 100.0 * progress.stream_time / progress.stream_duration << " %, ";
+  stream << std::setprecision(1) << std::setw(5) << 100.0 * progress.stream_time / progress.stream_duration << " %";
   if (progress.frequency > 0.0)
   {
-    stream << progress.frequency << " Hz";
+    stream << ", " << progress.frequency << " Hz";
     if (progress.reference_frequency != 1.0)
     {
       stream << " (" << std::setprecision(3) << progress.frequency / progress.reference_frequency << ')'
              << std::setprecision(1);
     }
   }
-  else
+  else if (!std::isnan(progress.frequency))
   {
-    stream << "at rest";
+    stream << ", at rest";
   }
   stream << ", " << toClock(progress.stream_time) << " of " << toClock(progress.stream_duration);
   if (progress.wall_time > 0.0 && progress.stream_time > 0.0)

@@ -6,10 +6,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include <geometry_msgs/AccelStamped.h>
 #include <ros/message_traits.h>
 #include <rosbag/bag.h>
 #include <rosbag/query.h>
 #include <rosbag/view.h>
+#include <sensor_msgs/Imu.h>
 #include <sys/stat.h>
 #include <vibro_impact/ContactForce.h>
 #include <vibro_impact/Gap.h>
@@ -123,6 +125,34 @@ Message messageOf(const rosbag::MessageInstance& instance)
 
 struct RecordedRun::Implementation
 {
+  void open(const std::vector<std::string>& paths)
+  {
+    if (paths.empty())
+    {
+      throw config::Error("no bag is given");
+    }
+    for (const std::string& path : paths)
+    {
+      names += (names.empty() ? "" : ", ") + path;
+      requireBag(path);
+      requireSoundBag(path);
+      bags.push_back(std::make_unique<rosbag::Bag>());
+      openBag(*bags.back(), path);
+    }
+    try
+    {
+      everything = std::make_unique<rosbag::View>();
+      for (const auto& bag : bags)
+      {
+        everything->addQuery(*bag);
+      }
+    }
+    catch (const std::runtime_error& error)
+    {
+      throw config::Error(damaged(names, error.what()));
+    }
+  }
+
   template <typename Message>
   std::string find(const std::string& name_space, bool required)
   {
@@ -229,30 +259,7 @@ RecordedRun::RecordedRun(const std::vector<std::string>& paths, const std::strin
     : implementation_(std::make_unique<Implementation>())
 {
   Implementation& self = *implementation_;
-  if (paths.empty())
-  {
-    throw config::Error("no bag is given");
-  }
-  for (const std::string& path : paths)
-  {
-    self.names += (self.names.empty() ? "" : ", ") + path;
-    requireBag(path);
-    requireSoundBag(path);
-    self.bags.push_back(std::make_unique<rosbag::Bag>());
-    openBag(*self.bags.back(), path);
-  }
-  try
-  {
-    self.everything = std::make_unique<rosbag::View>();
-    for (const auto& bag : self.bags)
-    {
-      self.everything->addQuery(*bag);
-    }
-  }
-  catch (const std::runtime_error& error)
-  {
-    throw config::Error(damaged(self.names, error.what()));
-  }
+  self.open(paths);
   self.topics.base_excitation =
       excitation.empty() ? self.find<BaseExcitation>(name_space, true) : self.require<BaseExcitation>(excitation);
   const bool whole = contents == RecordedContents::whole_run;
@@ -330,5 +337,21 @@ void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)
   implementation_->read({implementation_->topics.base_excitation}, progress,
                         [&](const rosbag::MessageInstance& instance) { sink(messageOf<BaseExcitation>(instance)); });
 }
+
+template <typename Message>
+void readTopic(const std::vector<std::string>& paths, const std::string& topic,
+               const std::function<void(const Message&)>& sink)
+{
+  RecordedRun::Implementation recording;
+  recording.open(paths);
+  recording.readAll<Message>(recording.require<Message>(topic), sink);
+}
+
+template void readTopic(const std::vector<std::string>&, const std::string&,
+                        const std::function<void(const BaseExcitation&)>&);
+template void readTopic(const std::vector<std::string>&, const std::string&,
+                        const std::function<void(const geometry_msgs::AccelStamped&)>&);
+template void readTopic(const std::vector<std::string>&, const std::string&,
+                        const std::function<void(const sensor_msgs::Imu&)>&);
 
 }  // namespace vibro_impact::graph

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include <boost/make_shared.hpp>
 
@@ -59,9 +58,12 @@ Shaker::Shaker(ros::NodeHandle node, const ros::NodeHandle& private_node, const 
     : stop_(stop),
       parameters_(readParameters(private_node)),
       signal_(core::makeDriveSignal(parameters_.signal, parameters_.sample_rate)),
-      reference_frequency_(
-          std::visit([](const auto& parameters) { return parameters.reference_frequency; }, parameters_.signal))
+      reference_frequency_(core::referenceFrequency(parameters_.signal))
 {
+  if (!parameters_.remark.empty())
+  {
+    ROS_WARN_STREAM(parameters_.remark);
+  }
   node.setCallbackQueue(&queue_);
   if (!parameters_.recorder.empty())
   {
@@ -199,7 +201,7 @@ void Shaker::waitWhile(const std::function<std::string()>& what, double period)
 
 void Shaker::stream()
 {
-  block_.sample_period = 1.0 / signal_->sampleRate();
+  block_.sample_period = signal_->samplePeriod();
   const std::uint64_t samples = signal_->samples();
   const Stamp start = fromTime(ros::Time::now());
   const Clock::time_point wall_start = Clock::now();

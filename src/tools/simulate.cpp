@@ -23,8 +23,10 @@
 #include "vibro_impact/config/sampled_excitation.h"
 #include "vibro_impact/config/simulated_run.h"
 #include "vibro_impact/core/switched_model.h"
+#include "vibro_impact/ros/parameter_file.h"
 #include "vibro_impact/ros/recorded_run.h"
 #include "vibro_impact/ros/recording_simulation.h"
+#include "vibro_impact/ros/signal_table.h"
 
 namespace
 {
@@ -35,10 +37,11 @@ struct Arguments
   std::optional<std::string> configuration;
   std::string out;
   bool plot = false;
-  // The drive: a harmonic one, or a file of samples, or bags.
+  // The drive: a harmonic one, or a file of samples, or one with a shaker's signal, or bags.
   std::optional<double> omega_star, frequency_hz;
   config::HarmonicRunOptions harmonic;
   std::string excitation;
+  std::string signal;
   std::vector<std::string> bags;
   std::string name_space;
   std::optional<core::InitialMotion> initial;
@@ -56,6 +59,7 @@ tools::Options options()
   add("cycles", text("C"), "cycles of the harmonic drive; default 100");
   add("samples-per-cycle", text("n"), "rows of the history per cycle of the harmonic drive; default 200");
   add("excitation", text("CSV"), "drive by samples: a table with the columns time (s) and acceleration (m/s^2)");
+  add("signal", text("YAML"), "drive by a shaker's signal: a file such as shaker.launch takes");
   add("bag", boost::program_options::value<std::vector<std::string>>()->multitoken()->value_name("BAG..."),
       "drive by the recorded base_excitation: one bag, or all of a split one");
   add("namespace", text("NS"), "the run to take from a recording of several, such as /rig1");
@@ -121,20 +125,21 @@ std::uint64_t count(const tools::Given& given, const std::string& option, std::u
 
 Arguments interpret(const tools::Given& given)
 {
-  const std::size_t drives =
-      given.count("omega-star") + given.count("frequency") + given.count("excitation") + given.count("bag");
+  const std::size_t drives = given.count("omega-star") + given.count("frequency") + given.count("excitation") +
+                             given.count("signal") + given.count("bag");
   if (drives != 1)
   {
-    throw tools::UsageError(std::to_string(drives) +
-                            " drives are given: must be one of --omega-star, --frequency, --excitation, --bag");
+    throw tools::UsageError(
+        std::to_string(drives) +
+        " drives are given: must be one of --omega-star, --frequency, --excitation, --signal, --bag");
   }
   const bool bag = given.count("bag") != 0;
-  const bool samples = bag || given.count("excitation") != 0;
+  const bool samples = bag || given.count("excitation") != 0 || given.count("signal") != 0;
   allowOnlyWith(given, {"acceleration", "cycles", "samples-per-cycle"}, !samples, "harmonic drive");
   allowOnlyWith(given, {"every"}, samples, "drive by samples");
   allowOnlyWith(given, {"namespace"}, bag, "bag");
   allowOnlyWith(given, {"displacement1", "velocity1", "displacement2", "velocity2"}, !bag,
-                "harmonic drive or --excitation; a recorded stream finds the structures at rest");
+                "harmonic drive, --excitation or --signal; a recorded stream finds the structures at rest");
   if (given.count("out") == 0)
   {
     throw tools::UsageError("--out is missing");
@@ -162,6 +167,10 @@ Arguments interpret(const tools::Given& given)
   if (given.count("excitation") != 0)
   {
     arguments.excitation = given["excitation"].as<std::string>();
+  }
+  if (given.count("signal") != 0)
+  {
+    arguments.signal = given["signal"].as<std::string>();
   }
   if (bag)
   {
@@ -300,6 +309,10 @@ void run(const Arguments& arguments)
   if (!arguments.excitation.empty())
   {
     excitation = config::readExcitation(arguments.excitation);
+  }
+  if (!arguments.signal.empty())
+  {
+    excitation = graph::sampleSignal(graph::loadShakerParameters(arguments.signal));
   }
   const config::OutputDirectory out(arguments.out);
   const config::SimulatedRun result = recording ? simulateBag(arguments, *recording) : simulate(arguments, excitation);

@@ -179,8 +179,8 @@ TEST(ShakerParameters, needASignal)
   XmlRpcValue tree;
   tree["signal"]["type"] = "noise";
   EXPECT_EQ(complaint(tree),
-            "/shaker: signal.type = \"noise\": must be sine, stepped_sine, linear_sweep or "
-            "logarithmic_sweep");
+            "/shaker: signal.type = \"noise\": must be sine, stepped_sine, sine_dwells, linear_sweep, "
+            "logarithmic_sweep, banded_sweep, random, shock, table or bag");
   tree["signal"] = "loud";
   EXPECT_EQ(complaint(tree), "/shaker: signal = \"loud\": must be a map");
 }

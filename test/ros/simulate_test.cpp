@@ -351,7 +351,7 @@ TEST_F(Simulate, RefusesABadCommandLine)
   const std::string harmonic = configuration_ + " --omega-star 1.6";
   const std::string table = configuration_ + " --excitation " + excitationTable();
   expectRefusal(configuration_ + out, 2,
-                "0 drives are given: must be one of --omega-star, --frequency, --excitation, --bag");
+                "0 drives are given: must be one of --omega-star, --frequency, --excitation, --signal, --bag");
   expectRefusal(harmonic + " --frequency 400" + out, 2, "2 drives are given");
   expectRefusal("--omega-star 1.6" + out, 2, "0 configuration files are given: must be one");
   expectRefusal(harmonic + " " + limiting_case + out, 2, "2 configuration files are given: must be one");
@@ -359,7 +359,7 @@ TEST_F(Simulate, RefusesABadCommandLine)
   expectRefusal(harmonic + " --every 2" + out, 2, "--every is for a drive by samples");
   expectRefusal(harmonic + " --namespace /rig" + out, 2, "--namespace is for a bag");
   expectRefusal(table + " --cycles 5" + out, 2, "--cycles is for a harmonic drive");
-  expectRefusal("--bag x.bag --velocity1 1" + out, 2, "--velocity1 is for a harmonic drive or --excitation");
+  expectRefusal("--bag x.bag --velocity1 1" + out, 2, "--velocity1 is for a harmonic drive, --excitation or --signal");
   expectRefusal(configuration_ + " --omega-star 0" + out, 2, "--omega-star = \"0\": must be a number from 0.001");
   expectRefusal(configuration_ + " --frequency nan" + out, 2, "--frequency = \"nan\": must be a number");
   expectRefusal(harmonic + " --acceleration -1" + out, 2, "--acceleration = \"-1\": must be a number from 0 to");

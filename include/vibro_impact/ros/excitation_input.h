@@ -7,13 +7,12 @@
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 #include <geometry_msgs/AccelStamped.h>
-#include <geometry_msgs/Vector3.h>
 #include <ros/ros.h>
 #include <sensor_msgs/Imu.h>
 #include <vibro_impact/BaseExcitation.h>
 
 #include "vibro_impact/ros/log_throttle.h"
-#include "vibro_impact/ros/sample_grid.h"
+#include "vibro_impact/ros/sensor_samples.h"
 #include "vibro_impact/ros/simulator_parameters.h"
 #include "vibro_impact/ros/source_guard.h"
 
@@ -65,9 +64,8 @@ private:
   template <typename Message>
   void onMessage(const ros::MessageEvent<const Message>& event);
   void pass(const BaseExcitation& message);
-  void pass(const geometry_msgs::AccelStamped& message);
-  void pass(const sensor_msgs::Imu& message);
-  void pass(const std_msgs::Header& header, const geometry_msgs::Vector3& acceleration);
+  template <typename Message>
+  void pass(const Message& message);
   void onWaiting(const ros::WallTimerEvent& event);
   void checkType();
 
@@ -76,8 +74,7 @@ private:
   double max_input_age_;
   ExcitationSink& sink_;
   SourceGuard guard_;
-  SampleGrid grid_;
-  std::optional<std::string> frame_id_;  ///< of the samples; nothing: not known yet
+  SensorSamples samples_;
   std::string topic_;
   std::string type_;        ///< of the messages subscribed to
   std::string type_fault_;  ///< of the topic, as long as nothing comes

@@ -51,6 +51,9 @@ public:
   /// The map `key`; rejects another type and its absence.
   std::optional<XmlRpc::XmlRpcValue> map(const std::string& key);
 
+  /// The list of maps `key`, each to be read on its own; rejects another type, an empty list and its absence.
+  std::vector<ParameterReader> maps(const std::string& key);
+
   /// A map of those of the keys that are there, for a loader of their own.
   XmlRpc::XmlRpcValue take(const std::vector<std::string>& keys);
 
@@ -62,6 +65,9 @@ public:
 
   /// Rejects every key that none of the above was asked for.
   void rejectUnknown();
+
+  /// Takes over what was rejected by the reader of a part of this map.
+  void addFaults(const ParameterReader& part);
 
   /// One line each.
   const std::vector<std::string>& faults() const

@@ -10,7 +10,7 @@ struct Progress
   double stream_time = 0.0;          ///< published so far, s
   double stream_duration = 0.0;      ///< in the end, s
   double wall_time = 0.0;            ///< since the first block, s
-  double frequency = 0.0;            ///< of the drive now, Hz; 0: none
+  double frequency = 0.0;            ///< of the drive now, Hz; 0: at rest; NaN: not said
   double reference_frequency = 1.0;  ///< in which frequencies were given, Hz
 };
 

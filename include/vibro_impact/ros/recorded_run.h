@@ -89,9 +89,16 @@ public:
   /// Reads the excitation alone.
   void readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress = {}) const;
 
-private:
   struct Implementation;
+
+private:
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Reads one topic of one or several bags, ordered by the time of recording: of BaseExcitation,
+/// geometry_msgs/AccelStamped or sensor_msgs/Imu. Throws config::Error as RecordedRun does.
+template <typename Message>
+void readTopic(const std::vector<std::string>& paths, const std::string& topic,
+               const std::function<void(const Message&)>& sink);
 
 }  // namespace vibro_impact::graph

@@ -14,7 +14,8 @@ namespace vibro_impact::graph
 struct ShakerParameters
 {
   core::DriveParameters signal;              ///< signal: {type, acceleration, ...}
-  double sample_rate = 50000.0;              ///< Hz
+  double sample_rate = 50000.0;              ///< Hz; of a recorded signal its own
+  std::string remark;                        ///< what there is to say of a recorded signal; empty: nothing
   double block_rate = 200.0;                 ///< blocks per second of stream time, Hz
   double speed = 1.0;                        ///< stream time over wall time; 0: as fast as the blocks are answered
   std::uint32_t max_blocks_ahead = 0;        ///< most blocks without an answer by the simulator; 0: no answers expected
@@ -30,7 +31,8 @@ struct ShakerParameters
   std::uint64_t samplesPerBlock() const;
 };
 
-/// Reads a parameter tree, as the parameter server gives it. Throws config::Error with all faults in one message,
+/// Reads a parameter tree, as the parameter server gives it; the files of a recorded signal are relative to its
+/// `signal_directory`, without which their paths must be absolute. Throws config::Error with all faults in one message,
 /// `name` the name of the tree: unknown, missing, mistyped and out-of-range parameters, each with its value and what is
 /// allowed.
 ShakerParameters parseShakerParameters(const XmlRpc::XmlRpcValue& tree, const std::string& name);
