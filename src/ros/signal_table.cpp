@@ -78,7 +78,8 @@ std::string signalTable(const ShakerParameters& parameters, double from, double 
   const auto count = static_cast<std::uint64_t>(end - begin);
   if (count == 0)
   {
-    throw config::Error(text("the signal has no sample from ", from, " to ", to, " s: it lasts ",
+    const std::string until = std::isfinite(to) ? text("to ", to, " s") : "on";
+    throw config::Error(text("the signal has no sample from ", from, " s ", until, ": it lasts ",
                              samples * signal->samplePeriod(), " s"));
   }
   requireAtMost(count, most_rows, "take a part of it by --from and --to");

@@ -35,7 +35,7 @@ void run(const tools::Given& given)
 {
   const std::string file = tools::onlyFile(given, "signal", "signal file");
   const double from = timeOr(given, "from", 0.0);
-  const double to = timeOr(given, "to", std::numeric_limits<double>::max());
+  const double to = timeOr(given, "to", std::numeric_limits<double>::infinity());
   if (from > to)
   {
     throw tools::UsageError("--from must not be later than --to");

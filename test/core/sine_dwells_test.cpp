@@ -7,6 +7,7 @@
 #include "common.h"
 #include "signal_samples.h"
 #include "vibro_impact/core/drive_signal.h"
+#include "vibro_impact/core/drive_steps.h"
 
 namespace
 {
@@ -106,6 +107,25 @@ TEST(SineDwells, rampFromTheAmplitudeOfTheOneBefore)
   for (std::size_t i = 1; i < samples.size(); ++i)
   {
     ASSERT_LE(std::abs(samples[i] - samples[i - 1]), 1.001 * 6.0 * 2.0 * pi * 20.0 / 2000.0) << i;
+  }
+}
+
+TEST(SineDwells, areFoundAsStepsOfTheirOwnAmplitudes)
+{
+  SineDwellParameters parameters = variableFrequency();
+  parameters.dwell = 15.0;
+  parameters.ramp_cycles = 4.0;
+  const std::vector<double> samples = generate(*makeDriveSignal(parameters, 2000.0));
+  const std::vector<MeasuredStep> steps = findDriveSteps(samples.data(), samples.size(), 1.0 / 2000.0);
+  const std::vector<SineDwell> dwells = sineDwells(parameters);
+  ASSERT_EQ(steps.size(), dwells.size());
+  for (std::size_t i = 0; i < steps.size(); ++i)
+  {
+    const DriveStep step = driveStep(steps[i], 1.0 / 2000.0);
+    EXPECT_NEAR(step.frequency / (2.0 * pi), dwells[i].frequency, 1.0e-4);
+    EXPECT_NEAR(step.acceleration / dwells[i].acceleration, 1.0, 1.0e-2);
+    EXPECT_GE(static_cast<double>(steps[i].last - steps[i].first) / 2000.0 * dwells[i].frequency,
+              dwells[i].cycles - 6.0);
   }
 }
 

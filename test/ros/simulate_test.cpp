@@ -239,6 +239,42 @@ TEST_F(Simulate, GivesTheSameFromATableABagAndABareExcitation)
   }
 }
 
+TEST_F(Simulate, PlaysTheSignalOfAShaker)
+{
+  const std::string table = directory_.file("table.yaml", "signal: {type: table, file: " + excitationTable() + "}");
+  const std::string from_bag =
+      directory_.file("bag.yaml", "signal: {type: bag, files: [" + excitationBag() + "], topic: /shaker/measured}");
+  ASSERT_EQ(run(configuration_ + " --excitation " + excitationTable() + " --out " + results("expected")).status, 0);
+  ASSERT_EQ(run(configuration_ + " --signal " + table + " --out " + results("table")).status, 0);
+  ASSERT_EQ(run(configuration_ + " --signal " + from_bag + " --out " + results("bag")).status, 0);
+  const std::string expected = readText(results("expected") + "/impacts.csv");
+  EXPECT_GT(expected.size(), 1000u);
+  EXPECT_EQ(readText(results("table") + "/impacts.csv"), expected);
+  EXPECT_EQ(readText(results("bag") + "/impacts.csv"), expected);
+
+  const std::string sine = directory_.file(
+      "sine.yaml", "{sample_rate: 20000, signal: {type: sine, acceleration: 10, frequency: 400, cycles: 200}}");
+  const Outcome outcome = run(configuration_ + " --signal " + sine + " --every 10 --out " + results());
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("history.csv (1000 rows)"));
+  EXPECT_NEAR(this->table(results(), "history.csv").at("acceleration")[7],
+              10.0 * std::sin(2.0 * M_PI * 400.0 * 70.0 / 20000.0), 1.0e-9);
+}
+
+TEST_F(Simulate, RefusesABadSignal)
+{
+  const std::string out = " --out " + results();
+  expectRefusal(configuration_ + " --signal " + directory_.path() + "/absent.yaml" + out, 1,
+                "/absent.yaml: No such file or directory");
+  const std::string bad = directory_.file("bad.yaml", "{signal: {type: sine, acceleration: 2, frequency: 10}}");
+  expectRefusal(configuration_ + " --signal " + bad + out, 1, "bad.yaml: signal.cycles is missing");
+  const std::string endless = directory_.file(
+      "endless.yaml", "{sample_rate: 1000, signal: {type: sine, acceleration: 2, frequency: 10, cycles: 1e7}}");
+  expectRefusal(configuration_ + " --signal " + endless + out, 1,
+                "the signal has 1000000000 samples: at most 200000000 can be held at once");
+  expectRefusal(configuration_ + " --signal " + bad + " --cycles 4" + out, 2, "--cycles is for a harmonic drive");
+}
+
 TEST_F(Simulate, PrefersTheConfigurationThatIsGiven)
 {
   ASSERT_EQ(run("--bag " + bag(recorded()) + " --out " + results("recorded")).status, 0);
@@ -416,8 +452,8 @@ TEST_F(Simulate, Helps)
   EXPECT_EQ(outcome.error, "");
   for (const std::string option :
        {"CONFIG", "--omega-star", "--frequency", "--acceleration", "--cycles", "--samples-per-cycle", "--excitation",
-        "--bag", "--namespace", "--every", "--displacement1", "--velocity1", "--displacement2", "--velocity2",
-        "--history-from", "--plot", "--out"})
+        "--signal", "--bag", "--namespace", "--every", "--displacement1", "--velocity1", "--displacement2",
+        "--velocity2", "--history-from", "--plot", "--out"})
   {
     EXPECT_THAT(outcome.out, HasSubstr(option));
   }
