@@ -11,6 +11,7 @@
 #include "temporary_directory.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/config/number.h"
+#include "vibro_impact/core/switched_model.h"
 
 namespace vibro_impact::config
 {
@@ -497,6 +498,23 @@ TEST(Configuration, ShippedFilesAreTheOnesOfTheirNames)
   const core::SystemParameters table1 = loadFile(folder + "/table1.yaml");
   EXPECT_NEAR(ratio(table1), 73223.0, 1.0);
   EXPECT_EQ(std::get<core::BeamParameters>(table1.beam1).contact_location, 0.0265);
+}
+
+TEST(Configuration, ShipTubeHasItsModesWhereShipsVibrate)
+{
+  // A clamped-pinned beam of steel and water: (3.92660^2, 7.06858^2)/(2 pi L^2) sqrt(E I/m).
+  const double inner = 0.0603 - 2.0 * 0.0029;
+  const double mass = 7850.0 * M_PI / 4.0 * (0.0603 * 0.0603 - inner * inner) + 2.33;
+  const double stiffness = 2.06e11 * M_PI / 64.0 * (std::pow(0.0603, 4) - std::pow(inner, 4));
+  const double unit = std::sqrt(stiffness / mass) / (2.0 * M_PI * 4.4 * 4.4);
+  EXPECT_NEAR(2.33, 1000.0 * M_PI / 4.0 * inner * inner, 0.005);  // the water
+
+  const core::SwitchedModel model(loadFile(std::string(CONFIG_DIRECTORY) + "/ship_tube.yaml"));
+  const auto frequency = [](const core::LinearState& state, int mode) { return state.frequency[mode] / (2.0 * M_PI); };
+  EXPECT_NEAR(frequency(model.free(), 0) / (unit * 3.92660 * 3.92660), 1.0, 1.0e-5);
+  EXPECT_NEAR(frequency(model.free(), 1) / (unit * 7.06858 * 7.06858), 1.0, 1.0e-5);
+  EXPECT_GT(frequency(model.free(), 0), 10.0);
+  EXPECT_LT(frequency(model.free(), 1), 40.0);
 }
 
 /// The configuration with this in place of beam 1.
