@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "unit_beam.h"
 
@@ -37,6 +39,7 @@ std::unique_ptr<const UnitBeam> makeUnitBeam(const BeamParameters& parameters)
 
 Beam::Beam(const BeamParameters& parameters)
     : beam_(makeUnitBeam(parameters)),
+      length_(parameters.length),
       frequency_unit_(std::sqrt(bendingStiffness(parameters) / massPerLength(parameters)) /
                       (parameters.length * parameters.length)),
       mass_unit_(massPerLength(parameters) * parameters.length),
@@ -107,6 +110,52 @@ double Beam::receptance(double omega) const
     sum += share * share * square * square / ((mode.frequency - square) * (mode.frequency + square));
   }
   return static_cast<double>(sum) * compliance_unit_;
+}
+
+std::vector<double> Beam::modeShape(int m, const std::vector<double>& x) const
+{
+  std::vector<double> shape;
+  for (const Precise value : beam_->shape(m, dimensionless(x)))
+  {
+    shape.push_back(static_cast<double>(value) / std::sqrt(mass_unit_));
+  }
+  return shape;
+}
+
+std::vector<double> Beam::staticShape(int kept, const std::vector<double>& x) const
+{
+  const std::vector<Precise> points = dimensionless(x);
+  std::vector<Precise> sum = beam_->staticShape(points);
+  for (int m = beam_->rigidBodyModeCount() + 1; m <= kept; ++m)
+  {
+    const UnitMode mode = beam_->mode(m);
+    const std::vector<Precise> shape = beam_->shape(m, points);
+    for (std::size_t i = 0; i < sum.size(); ++i)
+    {
+      sum[i] -= shape[i] * mode.contact / (mode.frequency * mode.frequency);
+    }
+  }
+  std::vector<double> deflection;
+  for (const Precise value : sum)
+  {
+    deflection.push_back(static_cast<double>(value) * compliance_unit_);
+  }
+  return deflection;
+}
+
+std::vector<Precise> Beam::dimensionless(const std::vector<double>& x) const
+{
+  std::vector<Precise> points;
+  for (const double at : x)
+  {
+    if (!(at >= 0.0 && at <= length_))
+    {
+      throw std::invalid_argument("x: " + std::to_string(at) + " m; allowed: 0 to the beam's length, " +
+                                  std::to_string(length_) + " m");
+    }
+    points.push_back(static_cast<Precise>(at) / length_);
+  }
+  return points;
 }
 
 }  // namespace vibro_impact::core

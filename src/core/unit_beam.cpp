@@ -1,7 +1,9 @@
 #include "unit_beam.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -121,15 +123,6 @@ StaticDeflections plainDeflections(const Ends& ends, Precise x)
   return {b * b * (99 - 280 * b + 210 * b * b - 21 * b * b * b * b) / 420,
           b * (16 - 70 * b * b + 70 * b * b * b - 21 * b * b * b * b) / 1680};
 }
-
-/// Every motion of a uniform beam at one frequency, written so that nothing overflows and nothing cancels at high wave
-/// numbers, z = lambda times the coordinate from 0 to Z:
-///   w = a sin z + b cos z + c exp(-z) + d exp(z - Z)
-struct Wave
-{
-  Precise a = 0, b = 0, c = 0, d = 0;
-  Precise end = 0;  // Z
-};
 
 /// w and its first three derivatives to z.
 using Derivatives = std::array<Precise, 4>;
@@ -280,7 +273,7 @@ void UnitBeam::findRigidBodyModes()
 
 UnitMode UnitBeam::mode(int m) const
 {
-  UnitMode mode = m <= rigid_body_modes_ ? rigidBodyMode(m) : (plain_ ? plainMode(m) : modeWithBody(m));
+  UnitMode mode = m <= rigid_body_modes_ ? rigidBodyMode(m) : (plain_ ? plainMode(m, contact_) : modeWithBody(m));
   if (std::abs(mode.contact) < node)
   {
     mode.contact = 0;
@@ -294,13 +287,48 @@ UnitMode UnitBeam::rigidBodyMode(int m) const
   return {0, rigid_shapes_[at].value + rigid_shapes_[at].slope * offset_, rigid_participations_[at]};
 }
 
-UnitMode UnitBeam::plainMode(int m) const
+std::vector<Precise> UnitBeam::shape(int m, const std::vector<Precise>& x) const
+{
+  std::vector<Precise> shape;
+  if (m <= rigid_body_modes_)
+  {
+    const RigidShape& rigid = rigid_shapes_[static_cast<std::size_t>(m - 1)];
+    std::transform(x.begin(), x.end(), std::back_inserter(shape),
+                   [&](Precise at) { return rigid.value + rigid.slope * (at - middle()); });
+  }
+  else if (plain_)
+  {
+    std::transform(x.begin(), x.end(), std::back_inserter(shape), [&](Precise at) { return plainMode(m, at).contact; });
+  }
+  else
+  {
+    const BodyMode mode = findBodyMode(m);
+    const auto value = [&](Precise at)
+    {
+      const auto [segment, t] = place(at);
+      return mode.scale * (segment < 0
+                               ? mode.deflection + mode.rotation * (at - middle())
+                               : derivatives(mode.waves[static_cast<std::size_t>(segment)], mode.lambda * t)[0]);
+    };
+    std::transform(x.begin(), x.end(), std::back_inserter(shape), value);
+  }
+  return shape;
+}
+
+UnitBeam::Place UnitBeam::place(Precise x) const
+{
+  const Precise from_middle = x - middle();
+  const Precise t = std::abs(from_middle) - body_.length / 2;
+  return t <= 0 ? Place{-1, from_middle} : Place{from_middle < 0 ? 0 : 1, t};
+}
+
+UnitMode UnitBeam::plainMode(int m, Precise at) const
 {
   const int number = m - rigid_body_modes_;  // among the elastic ones
   const Orientation orientation = canonical(ends_);
   const Ends& ends = orientation.ends;
   const Precise beta = findEigenvalue(ends, number).value();
-  const Precise x = orientation.mirrored ? 1 - contact_ : contact_;
+  const Precise x = orientation.mirrored ? 1 - at : at;
 
   if (ends[0] == End::pinned)
   {
@@ -421,7 +449,7 @@ UnitBeam::Count UnitBeam::modesBelow(Precise lambda) const
   return {held[0] + held[1] + negative(stiffness.deflection) + negative(rest), 0};
 }
 
-UnitMode UnitBeam::modeWithBody(int m) const
+UnitBeam::BodyMode UnitBeam::findBodyMode(int m) const
 {
   const auto total = [](const Count& count) { return count[0] + count[1]; };
   Precise low = 0;
@@ -453,9 +481,10 @@ UnitMode UnitBeam::modeWithBody(int m) const
   }
 
   // How the body moves: the vector that its dynamic stiffness takes to zero.
-  const Precise lambda = high;
-  Precise deflection = 1;
-  Precise rotation = 0;
+  BodyMode mode;
+  const Precise lambda = mode.lambda = high;
+  Precise& deflection = mode.deflection;
+  Precise& rotation = mode.rotation;
   if (symmetric_)
   {
     const bool moves = above[0] > below[0] && m == total(below) + 1;
@@ -474,23 +503,62 @@ UnitMode UnitBeam::modeWithBody(int m) const
   }
 
   Precise norm = body_.mass * deflection * deflection + body_.rotary_inertia * rotation * rotation;
-  Precise participation = body_.mass * deflection;
-  for (const Segment& segment : segments_)
+  mode.participation = body_.mass * deflection;
+  for (std::size_t i = 0; i < 2; ++i)
   {
+    const Segment& segment = segments_[i];
     const Precise Z = lambda * segment.length;
     const Precise inner = deflection + segment.side * body_.length / 2 * rotation;
-    const Wave wave = solveSegment(segment.outer, Z, inner, segment.side * rotation / lambda);
-    const Derivatives from = derivatives(wave, 0);
-    const Derivatives to = derivatives(wave, Z);
+    mode.waves[i] = solveSegment(segment.outer, Z, inner, segment.side * rotation / lambda);
+    const Derivatives from = derivatives(mode.waves[i], 0);
+    const Derivatives to = derivatives(mode.waves[i], Z);
     norm += integralOfSquare(from, to, Z) / lambda;
-    participation += integral(from, to) / lambda;
+    mode.participation += integral(from, to) / lambda;
   }
-  const Precise scale = 1 / std::sqrt(norm);
-  return {lambda * lambda, scale * (deflection + offset_ * rotation),
-          symmetric_ && deflection == 0 ? Precise{0} : scale * participation};
+  mode.scale = 1 / std::sqrt(norm);
+  return mode;
 }
 
-Precise UnitBeam::staticDeflection(Load load) const
+UnitMode UnitBeam::modeWithBody(int m) const
+{
+  const BodyMode mode = findBodyMode(m);
+  return {mode.lambda * mode.lambda, mode.scale * (mode.deflection + offset_ * mode.rotation),
+          symmetric_ && mode.deflection == 0 ? Precise{0} : mode.scale * mode.participation};
+}
+
+std::vector<Precise> UnitBeam::staticShape(const std::vector<Precise>& x) const
+{
+  Load load;
+  load.force = 1;
+  load.moment = offset_;
+  const StaticSolution solution = solveStatics(load);
+  const auto value = [&](Precise at)
+  {
+    const auto [side, t] = place(at);
+    if (side < 0)
+    {
+      return solution.deflection + solution.rotation * t;
+    }
+    const auto i = static_cast<std::size_t>(side);
+    const Segment& segment = segments_[i];
+    const Precise arm = body_.length / 2;
+    const Precise q0 = solution.distributed.value + solution.distributed.slope * segment.side * arm;
+    const Precise q1 = solution.distributed.slope * segment.side;
+    return solution.deflection + segment.side * solution.rotation * (arm + t) +
+           t * t * (solution.moment[i] / 2 + t * (solution.shear[i] / 6 + t * (q0 / 24 + t * q1 / 120)));
+  };
+  std::vector<Precise> shape;
+  std::transform(x.begin(), x.end(), std::back_inserter(shape), value);
+  return shape;
+}
+
+Precise UnitBeam::staticDeflection(const Load& load) const
+{
+  const StaticSolution solution = solveStatics(load);
+  return solution.deflection + offset_ * solution.rotation;
+}
+
+UnitBeam::StaticSolution UnitBeam::solveStatics(Load load) const
 {
   // What would accelerate the beam as a rigid body is balanced by its inertia.
   for (int i = 0; i < rigid_body_modes_; ++i)
@@ -591,7 +659,7 @@ Precise UnitBeam::staticDeflection(Load load) const
     equations(6 + mode, 1) += body_.rotary_inertia * shape.slope;
   }
   const Eigen::Matrix<Precise, Eigen::Dynamic, 1> solution = equations.colPivHouseholderQr().solve(right);
-  return solution(0) + offset_ * solution(1);
+  return {solution(0), solution(1), {solution(2), solution(4)}, {solution(3), solution(5)}, load.distributed};
 }
 
 }  // namespace vibro_impact::core

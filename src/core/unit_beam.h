@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "vibro_impact/core/parameters.h"
 
@@ -28,6 +29,15 @@ struct UnitMode
   Precise participation = 0;  ///< integral of the shape over the mass
 };
 
+/// Every motion of a uniform beam at one frequency, written so that nothing overflows and nothing cancels at high wave
+/// numbers, z = lambda times the coordinate from 0 to Z:
+///   w = a sin z + b cos z + c exp(-z) + d exp(z - Z)
+struct Wave
+{
+  Precise a = 0, b = 0, c = 0, d = 0;
+  Precise end = 0;  // Z
+};
+
 /// A uniform beam of unit length, bending stiffness and mass per length, with a rigid body in it: two segments that end
 /// at the body. A plain beam is the same with a body of no length, mass and inertia at the contact point.
 class UnitBeam
@@ -52,6 +62,12 @@ public:
   }
 
   UnitMode mode(int m) const;
+
+  /// The same mode along the beam, at the distances `x` in [0, 1] from the first end.
+  std::vector<Precise> shape(int m, const std::vector<Precise>& x) const;
+
+  /// Deflection of the points `x` under a unit force at the contact, without the rigid-body modes.
+  std::vector<Precise> staticShape(const std::vector<Precise>& x) const;
 
   /// Deflection of the contact point under a unit force there, without the rigid-body modes: whatever moves as a rigid
   /// body is held by its own inertia (inertia relief).
@@ -107,11 +123,49 @@ private:
   /// which are apart where both ends are alike; else all are in the first number.
   using Count = std::array<int, 2>;
 
+  /// A mode of the beam with its body, all but `scale` not normalised.
+  struct BodyMode
+  {
+    Precise lambda = 0;
+    Precise deflection = 1;  // of the body
+    Precise rotation = 0;
+    std::array<Wave, 2> waves;  // of the segments, over lambda times the outward coordinate
+    Precise participation = 0;
+    Precise scale = 1;
+  };
+
+  /// How the beam lies under a load. Along the outward coordinate t of segment i
+  ///   w = deflection + side arm rotation + side rotation t + moment_i t^2/2 + shear_i t^3/6 + q0 t^4/24 + q1 t^5/120
+  struct StaticSolution
+  {
+    Precise deflection = 0;  // of the body
+    Precise rotation = 0;
+    std::array<Precise, 2> shear;
+    std::array<Precise, 2> moment;
+    RigidShape distributed;  // the load on the segments, inertia relief included
+  };
+
+  /// Where on the beam a point lies: `segment` and the outward coordinate there, or -1 and the distance from the middle
+  /// of the body.
+  struct Place
+  {
+    int segment;
+    Precise t;
+  };
+
+  Precise middle() const  // of the body
+  {
+    return contact_ - offset_;
+  }
+  Place place(Precise x) const;
   void findRigidBodyModes();
   UnitMode rigidBodyMode(int m) const;
-  UnitMode plainMode(int m) const;
+  /// With the shape at `at` for that at the contact.
+  UnitMode plainMode(int m, Precise at) const;
   UnitMode modeWithBody(int m) const;
-  Precise staticDeflection(Load load) const;
+  BodyMode findBodyMode(int m) const;
+  Precise staticDeflection(const Load& load) const;
+  StaticSolution solveStatics(Load load) const;
   Stiffness dynamicStiffness(Precise lambda) const;
   Count modesBelow(Precise lambda) const;
 

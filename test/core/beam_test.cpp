@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -563,4 +564,111 @@ TEST(Beam, crossSectionsGiveStiffnessAndMass)
   beam.cross_section = Section{12.5, 0.4};
   EXPECT_EQ(bendingStiffness(beam), 12.5);
   EXPECT_EQ(massPerLength(beam), 0.4);
+}
+
+TEST(Beam, shapesAlongTheBeamAreThoseOfTheContactPointThere)
+{
+  for (const BeamParameters& parameters : manyBeams())
+  {
+    const Beam beam(parameters);
+    const std::vector<double> contact = {parameters.contact_location};
+    const int rigid = beam.rigidBodyModeCount();
+    const double unit = 1.0 / std::sqrt(massOf(parameters));
+    for (int m = 1; m <= 12; ++m)
+    {
+      EXPECT_NEAR(beam.modeShape(m, contact)[0], beam.mode(m).contact_deflection, 1e-12 * unit)
+          << name(parameters) << ", mode " << m;
+    }
+    for (const int kept : {rigid, rigid + 1, rigid + 5})
+    {
+      EXPECT_NEAR(beam.staticShape(kept, contact)[0] / beam.staticReceptance(kept), 1.0, 1e-9)
+          << name(parameters) << ", kept " << kept;
+    }
+    // Elsewhere: of a beam with its contact there. The sign of a mode belongs to the beam, not to its contact.
+    BeamParameters moved = parameters;
+    if (parameters.rigid_body)
+    {
+      moved.contact_location = 0.5 * parameters.length - 0.25 * parameters.rigid_body->length;
+    }
+    else
+    {
+      moved.contact_location += 0.05 * parameters.length;
+    }
+    for (int m = 1; m <= 12; ++m)
+    {
+      EXPECT_NEAR(beam.modeShape(m, {moved.contact_location})[0], Beam(moved).mode(m).contact_deflection, 1e-12 * unit)
+          << name(parameters) << ", mode " << m;
+    }
+    // What a force here does there, a force there does here (Maxwell).
+    EXPECT_NEAR(beam.staticShape(rigid, {moved.contact_location})[0] /
+                    Beam(moved).staticShape(rigid, {parameters.contact_location})[0],
+                1.0, 1e-9)
+        << name(parameters);
+  }
+}
+
+TEST(Beam, shapesAlongTheBeamAreOrthogonalInItsMass)
+{
+  // Gauss's rule of four points in 100 intervals of each side of the body, and the body's own mass and inertia. What is
+  // left of a static deflection by the kept modes has no part in them.
+  const double points[] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+  const double weights[] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+  constexpr int intervals = 100;
+  constexpr int modes = 8;
+  for (const BeamParameters& parameters : manyBeams())
+  {
+    const Beam beam(parameters);
+    const RigidBody body = parameters.rigid_body.value_or(RigidBody{});
+    const double middle = parameters.rigid_body ? 0.5 * parameters.length : parameters.contact_location;
+    std::vector<double> x;
+    std::vector<double> mass;
+    const double ends[][2] = {{0.0, middle - 0.5 * body.length}, {middle + 0.5 * body.length, parameters.length}};
+    for (const auto& [from, to] : ends)
+    {
+      for (int i = 0; i < 4 * intervals; ++i)
+      {
+        x.push_back(from + (to - from) * (i / 4 + points[i % 4]) / intervals);
+        mass.push_back((to - from) / intervals * weights[i % 4] * massPerLength(parameters));
+      }
+    }
+    const double step = std::max(0.25 * body.length, 1e-8 * parameters.length);
+    x.insert(x.end(), {middle, middle - step, middle + step});
+    const auto size = static_cast<Eigen::Index>(mass.size());
+    const auto deflection = [&](const std::vector<double>& shape)
+    { return Eigen::Map<const Eigen::VectorXd>(shape.data(), size); };
+    const auto product = [&](const std::vector<double>& a, const std::vector<double>& b)
+    {
+      const auto at = static_cast<std::size_t>(size);
+      const double run = x[at + 2] - x[at + 1];
+      return (deflection(a).array() * deflection(b).array() * deflection(mass).array()).sum() +
+             body.mass * a[at] * b[at] +
+             body.rotary_inertia * (a[at + 2] - a[at + 1]) / run * (b[at + 2] - b[at + 1]) / run;
+    };
+    std::vector<std::vector<double>> shapes;
+    for (int m = 1; m <= modes; ++m)
+    {
+      shapes.push_back(beam.modeShape(m, x));
+    }
+    const std::vector<double> rest = beam.staticShape(modes, x);
+    const double norm = std::sqrt(product(rest, rest));
+    for (int i = 0; i < modes; ++i)
+    {
+      for (int j = 0; j <= i; ++j)
+      {
+        EXPECT_NEAR(product(shapes[static_cast<std::size_t>(i)], shapes[static_cast<std::size_t>(j)]),
+                    i == j ? 1.0 : 0.0, 1e-5)
+            << name(parameters) << ", modes " << i + 1 << " and " << j + 1;
+      }
+      EXPECT_NEAR(product(shapes[static_cast<std::size_t>(i)], rest) / norm, 0.0, 1e-4) << name(parameters);
+    }
+  }
+}
+
+TEST(Beam, hasNoShapeBesideItself)
+{
+  const Beam beam(paperBeam());
+  EXPECT_THROW(beam.modeShape(1, {-1e-9}), std::invalid_argument);
+  EXPECT_THROW(beam.modeShape(1, {0.0, 0.053}), std::invalid_argument);
+  EXPECT_THROW(beam.staticShape(3, {std::nan("")}), std::invalid_argument);
+  EXPECT_EQ(beam.modeShape(1, {0.0, 0.02645}).size(), 2u);
 }
