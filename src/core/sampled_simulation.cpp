@@ -134,6 +134,15 @@ HistorySample SampledSimulation::sample() const
   return sample;
 }
 
+void SampledSimulation::structureCoordinates(Eigen::VectorXd& coordinates) const
+{
+  const SwitchedMotion& motion = implementation_->motion;
+  Eigen::VectorXd displacement;
+  Eigen::VectorXd velocity;
+  motion.coordinates(displacement, velocity);
+  coordinates.noalias() = model().structureCoordinates(motion.inContact()) * displacement;
+}
+
 EnergyAccount SampledSimulation::energyAccount() const
 {
   return implementation_->motion.sample().energy;

@@ -489,7 +489,7 @@ std::vector<ContactMode> conjoinedModes(const std::vector<SignedStructure>& stru
   {
     for (int m = 1; m <= kept[i]; ++m)
     {
-      space.modes.push_back({structures[i].number(), m});
+      space.modes.push_back({structures[i].number(), m, structures[i].structure->mode(m).contact_deflection});
     }
   }
   space.rotation = separateEqualFrequencies(coordinates);
@@ -642,6 +642,7 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
     assembleContactState(modes, rows, spring_, parameters.damping.contact, contact_, mapping_);
     structure_modes_ = std::move(space.modes);
     structure_coordinates_ = space.rotation.leftCols(free_size);
+    contact_structure_coordinates_ = space.rotation * shapes(modes);
     contact_.gap *= 1.0 - spring_.stiffness * leftOutCompliance(structures, contact_, spring_.stiffness);
     free_.gap = spring_.clearance;
   }
@@ -657,12 +658,12 @@ SwitchedModel::SwitchedModel(const SystemParameters& parameters) : spring_(param
       for (int m = 1; m <= kept; ++m)
       {
         coordinates.push_back(gapMode(side, m));
-        structure_modes_.push_back({side.number(), m});
+        structure_modes_.push_back({side.number(), m, side.sign * coordinates.back().contact_deflection});
       }
       if (const std::optional<Mode> shape = attachmentShape(side, kept))
       {
         coordinates.push_back(*shape);
-        structure_modes_.push_back({side.number(), 0});
+        structure_modes_.push_back({side.number(), 0, side.sign * shape->contact_deflection});
       }
     }
     buildFromSpace(std::move(coordinates), parameters.damping);
@@ -711,7 +712,7 @@ SwitchedModel::SwitchedModel(const std::vector<Mode>& modes, const ContactParame
   }
   for (std::size_t n = 0; n < modes.size(); ++n)
   {
-    structure_modes_.push_back({1, static_cast<int>(n) + 1});
+    structure_modes_.push_back({1, static_cast<int>(n) + 1, modes[n].contact_deflection});
   }
   buildFromSpace(modes, damping);
 }
@@ -733,6 +734,7 @@ void SwitchedModel::buildFromSpace(std::vector<Mode> coordinates, const DampingP
     free_energy_[index] = structureEnergy(projected, free_.frequency, all_free);
     contact_energy_[index] = structureEnergy(projected, free_.frequency, mapping_);
   }
+  contact_structure_coordinates_ = structure_coordinates_ * mapping_;
   lossless_ = true;
 }
 

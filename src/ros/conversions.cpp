@@ -85,6 +85,29 @@ void toMessage(const StampedImpact& impact, Impact& message)
   message.base_work = impact.impact.base_work;
 }
 
+void toMessage(const StreamSimulation::Motion& motion, const core::SwitchedModel& model, double sample_period,
+               StructureMotion& message)
+{
+  message.header = std_msgs::Header();
+  message.header.stamp = toTime(motion.stamp);
+  message.header.frame_id = base_frame;
+  message.seq = motion.seq;
+  message.sample_period = sample_period;
+  message.step = motion.step;
+  message.structure.clear();
+  message.mode.clear();
+  message.contact_deflection.clear();
+  for (const core::StructureMode& mode : model.structureModes())
+  {
+    message.structure.push_back(static_cast<std::uint8_t>(mode.structure));
+    message.mode.push_back(static_cast<std::uint32_t>(mode.number));
+    message.contact_deflection.push_back(mode.contact_deflection);
+  }
+  message.coordinates = motion.coordinates;
+  message.gap = motion.gap;
+  message.force = motion.force;
+}
+
 void toMessage(const core::SwitchedModel& model, const std::string& configuration, const std::string& version,
                ModelInfo& message)
 {

@@ -1,5 +1,6 @@
 #include "vibro_impact/ros/simulator.h"
 
+#include <cmath>
 #include <exception>
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -20,6 +21,28 @@ constexpr double linger = 0.3;
 /// An impact is small and must not be lost: this holds minutes of them for a subscriber that hangs.
 constexpr std::uint32_t impact_queue = 100000;
 constexpr std::uint32_t mirror_queue = 100;
+
+/// A picture of the motion may lose some of it.
+constexpr std::uint32_t motion_queue = 100;
+
+/// Rows of `motion` in a period of the lowest natural frequency: a drive at 1.5 to 4 times that, where the structures
+/// knock against each other, has 16 to 43 in a cycle.
+constexpr double rows_per_period = 64.0;
+
+/// Rows per second that show all there is to see, Hz.
+double automaticMotionRate(const core::SwitchedModel& model)
+{
+  constexpr double two_pi = 6.283185307179586;
+  const Eigen::ArrayXd frequencies(model.free().frequency);
+  for (const double frequency : frequencies)
+  {
+    if (frequency > 0.0)
+    {
+      return rows_per_period * frequency / two_pi;
+    }
+  }
+  return rows_per_period * model.contact().frequency.maxCoeff() / two_pi;
+}
 
 SimulatorParameters readParameters(const ros::NodeHandle& private_node)
 {
@@ -48,6 +71,7 @@ Simulator::Simulator(ros::NodeHandle node, ros::NodeHandle private_node)
   gap_.advertise<Gap>(node, "gap", queue_size);
   force_.advertise<ContactForce>(node, "contact_force", queue_size);
   impact_.advertise<Impact>(node, "impact", impact_queue);
+  motion_publisher_ = node.advertise<StructureMotion>("motion", motion_queue);
   wrench_publisher_ = node.advertise<geometry_msgs::WrenchStamped>("contact_wrench", mirror_queue);
   gap_now_publisher_ = node.advertise<std_msgs::Float64>("gap_now", mirror_queue);
   model_info_publisher_ = node.advertise<ModelInfo>("model_info", StreamSimulation::max_waiting_changes, true);
@@ -115,6 +139,7 @@ void Simulator::onExcitation(const Samples& excitation)
     input_statistics_.countDiscarded(samples);
     return;
   }
+  simulation_.recordMotion(motionStep(excitation.sample_period));
   const StreamSimulation::Answer& answer = simulation_.advance(excitation);
   input_statistics_.count(answer.verdict, excitation.seq, samples);
   log(answer.verdict);
@@ -227,6 +252,7 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
   {
     publishStart(answer);
   }
+  publishMotion(answer);
   // New messages each time: subscribers in this process keep the ones that they were given.
   const auto force = boost::make_shared<ContactForce>();
   toMessage(answer.force, *force);
@@ -245,6 +271,29 @@ void Simulator::publish(const StreamSimulation::Answer& answer)
     std_msgs::Float64 gap_now;
     gap_now.data = extremes.gap;
     gap_now_publisher_.publish(gap_now);
+  }
+}
+
+std::uint64_t Simulator::motionStep(double sample_period) const
+{
+  if (motion_publisher_.getNumSubscribers() == 0)
+  {
+    return 0;
+  }
+  const double rate =
+      parameters_.motion_rate > 0.0 ? parameters_.motion_rate : automaticMotionRate(simulation_.model());
+  // A period that makes no sense is refused with its block.
+  const double step = 1.0 / (rate * sample_period);
+  return step > 1.5 && step < 1.0e9 ? static_cast<std::uint64_t>(std::llround(step)) : 1;
+}
+
+void Simulator::publishMotion(const StreamSimulation::Answer& answer)
+{
+  if (!answer.motion.gap.empty())
+  {
+    const auto motion = boost::make_shared<StructureMotion>();
+    toMessage(answer.motion, simulation_.model(), answer.gap.sample_period, *motion);
+    motion_publisher_.publish(motion);
   }
 }
 

@@ -17,6 +17,7 @@ constexpr double highest_acceleration = 1.0e9;
 constexpr double longest_time = 60.0;
 constexpr double longest_wait = 3600.0;
 constexpr double highest_mirror_rate = 1.0e4;
+constexpr double highest_motion_rate = 1.0e9;
 constexpr double highest_threshold = 1.0e9;
 constexpr std::uint32_t longest_queue = 1000000;
 
@@ -80,6 +81,7 @@ SimulatorParameters parseSimulatorParameters(const XmlRpcValue& tree, const std:
   limits.max_step_back = reader.nonNegative("max_step_back", limits.max_step_back, longest_time, " (s)");
   limits.max_stamp_jitter = reader.positive("max_stamp_jitter", limits.max_stamp_jitter, longest_time, " (s)");
   parameters.mirror_rate = reader.positive("mirror_rate", parameters.mirror_rate, highest_mirror_rate, " (Hz)");
+  parameters.motion_rate = reader.nonNegative("motion_rate", parameters.motion_rate, highest_motion_rate, " (Hz)");
   parameters.queue_size = reader.count("queue_size", parameters.queue_size, longest_queue);
   readThresholds(reader, parameters.thresholds);
   parameters.diagnostic_period =

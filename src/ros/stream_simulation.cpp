@@ -58,6 +58,7 @@ const StreamSimulation::Answer& StreamSimulation::advance(const Samples& excitat
     }
     first_seq_ = excitation.seq;
     carried_over_ = false;
+    greatest_force_ = 0.0;
     if (observer_ != nullptr)
     {
       observer_->onStart(excitation.stamp, excitation.sample_period);
@@ -148,16 +149,53 @@ void StreamSimulation::advanceSamples(std::uint64_t seq, const double* accelerat
       simulation_->setModel(model_, *this);
       noteContactChange(seq);
     }
-    const std::size_t piece =
-        waiting_.empty() ? count
-                         : static_cast<std::size_t>(std::min<std::uint64_t>(count, waiting_.begin()->first - seq));
+    std::uint64_t piece = count;
+    if (!waiting_.empty())
+    {
+      piece = std::min(piece, waiting_.begin()->first - seq);
+    }
+    if (motion_step_ > 0)
+    {
+      piece = std::min(piece, untilRow(seq) + 1);
+    }
     take(acceleration, piece, gap, force);
+    if (motion_step_ > 0)
+    {
+      greatest_force_ = std::max(greatest_force_, *std::max_element(force, force + piece));
+      if (untilRow(seq) + 1 == piece)
+      {
+        recordRow(seq + piece - 1, gap[piece - 1]);
+      }
+    }
     seq += piece;
     acceleration += piece;
     gap += piece;
     force += piece;
     count -= piece;
   }
+}
+
+/// How many samples lie before the next one with a row, `seq` or one after it.
+std::uint64_t StreamSimulation::untilRow(std::uint64_t seq) const
+{
+  const std::uint64_t past = seq % motion_step_;
+  return past == 0 ? 0 : motion_step_ - past;
+}
+
+void StreamSimulation::recordRow(std::uint64_t seq, double gap)
+{
+  Motion& motion = answer_.motion;
+  if (motion.gap.empty())
+  {
+    motion.step = motion_step_;
+    motion.seq = seq;
+    motion.stamp = rules_.clock().at(seq);
+  }
+  simulation_->structureCoordinates(coordinates_);
+  motion.coordinates.insert(motion.coordinates.end(), coordinates_.data(), coordinates_.data() + coordinates_.size());
+  motion.gap.push_back(gap);
+  motion.force.push_back(greatest_force_);
+  greatest_force_ = 0.0;
 }
 
 /// Whether another contact holds from sample `seq` on; then it is model_ from now on.
@@ -217,6 +255,9 @@ void StreamSimulation::clearAnswer()
   answer_.force.values.clear();
   answer_.impacts.clear();
   answer_.contact_changes.clear();
+  answer_.motion.coordinates.clear();
+  answer_.motion.gap.clear();
+  answer_.motion.force.clear();
   answer_.switch_limits = 0;
 }
 

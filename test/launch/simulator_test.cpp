@@ -24,6 +24,7 @@
 #include <unistd.h>
 #include <vibro_impact/SetContact.h>
 #include <vibro_impact/StreamStart.h>
+#include <vibro_impact/StructureMotion.h>
 
 #include "spin_until.h"
 #include "vibro_impact/config/configuration.h"
@@ -508,6 +509,49 @@ TEST_F(SimulatorTest, mirrorsHoldTheExtremes)
   const auto least = std::min_element(client_->gaps_now.begin(), client_->gaps_now.end(),
                                       [](const auto& a, const auto& b) { return a.data < b.data; });
   EXPECT_EQ(least->data, smallest);
+}
+
+TEST_F(SimulatorTest, tellsTheMotionToWhoAsksAndAnswersAsWithout)
+{
+  sendStream(0, 5000);
+  expectAnswers();
+  {
+    std::vector<vibro_impact::StructureMotion> motions;
+    ros::NodeHandle node;
+    const ros::Subscriber subscriber = node.subscribe<vibro_impact::StructureMotion>(
+        "motion", 0, [&motions](const vibro_impact::StructureMotion::ConstPtr& motion) { motions.push_back(*motion); });
+    graph::NodeQuery query;
+    ASSERT_TRUE(spinUntil([&] { return graph::isConnected(query, subscriber.getTopic(), ros::this_node::getName()); }));
+    // 64 rows in a period of 271.5 Hz are one every 2.9 samples.
+    constexpr std::uint64_t step = 3;
+    graph::StreamSimulation recorded(*reference_);
+    recorded.recordMotion(step);
+    std::vector<vibro_impact::StructureMotion> expected;
+    for (std::uint64_t seq = 5000; seq < 10000; seq += block_size)
+    {
+      expected.emplace_back();
+      graph::toMessage(recorded.advance(block(seq)).motion, *model_, period, expected.back());
+    }
+    sendStream(5000, 10000);
+    expectAnswers();  // those of a simulation that records nothing
+    ASSERT_TRUE(spinUntil([&] { return motions.size() >= expected.size(); })) << motions.size();
+    ASSERT_EQ(motions.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+    {
+      EXPECT_EQ(motions[i].header.stamp, expected[i].header.stamp);
+      EXPECT_EQ(motions[i].seq, expected[i].seq);
+      EXPECT_EQ(motions[i].step, step);
+      EXPECT_EQ(motions[i].structure, expected[i].structure);
+      EXPECT_EQ(motions[i].mode, expected[i].mode);
+      EXPECT_EQ(motions[i].contact_deflection, expected[i].contact_deflection);
+      EXPECT_EQ(motions[i].coordinates, expected[i].coordinates);
+      EXPECT_EQ(motions[i].gap, expected[i].gap);
+      EXPECT_EQ(motions[i].force, expected[i].force);
+    }
+  }
+  // Nobody listens any more.
+  sendStream(10000, 12000);
+  expectAnswers();
 }
 
 TEST_F(SimulatorTest, diagnosticsCountWhatIsDoneAndSilenceIsStale)

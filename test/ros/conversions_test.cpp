@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -133,6 +134,31 @@ core::SystemParameters limitingCase()
   parameters.damping = {0.01, 0.05};
   parameters.basis = core::ConjoinedBasis{2, 3};
   return parameters;
+}
+
+TEST(StructureMotionConversion, saysWhatEachNumberIs)
+{
+  core::SystemParameters parameters = limitingCase();
+  parameters.basis = core::AttachmentBasis{2};
+  const core::SwitchedModel model(parameters);
+  vibro_impact::StructureMotion message;
+  graph::toMessage(
+      graph::StreamSimulation::Motion{
+          4, 1000000000008ull, stamp, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0.5, 0.6}, {0.0, 7.0}},
+      model, 2.0e-5, message);
+  EXPECT_EQ(message.header.stamp, ros::Time(1700000000, 123456789));
+  EXPECT_EQ(message.header.frame_id, "base_frame");
+  EXPECT_EQ(message.seq, 1000000000008ull);
+  EXPECT_EQ(message.sample_period, 2.0e-5);
+  EXPECT_EQ(message.step, 4u);
+  EXPECT_EQ(message.structure, (std::vector<std::uint8_t>{1, 1, 1}));
+  EXPECT_EQ(message.mode, (std::vector<std::uint32_t>{1, 2, 0}));
+  ASSERT_EQ(message.contact_deflection.size(), 3u);
+  EXPECT_NEAR(message.contact_deflection[0], std::sqrt(2.0 / (954.0 * 0.00127 * 0.0127 * 0.0529)), 1e-9);
+  EXPECT_EQ(message.contact_deflection[1], 0.0);
+  EXPECT_EQ(message.coordinates, (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+  EXPECT_EQ(message.gap, (std::vector<double>{0.5, 0.6}));
+  EXPECT_EQ(message.force, (std::vector<double>{0.0, 7.0}));
 }
 
 TEST(ModelInfoConversion, saysWhatIsComputed)

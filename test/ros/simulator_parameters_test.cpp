@@ -113,6 +113,7 @@ TEST(SimulatorParameters, ownParametersHaveDefaults)
   EXPECT_EQ(parameters.limits.max_step_back, 0.1);
   EXPECT_EQ(parameters.limits.max_stamp_jitter, 0.05);
   EXPECT_EQ(parameters.mirror_rate, 50.0);
+  EXPECT_EQ(parameters.motion_rate, 0.0);
   EXPECT_EQ(parameters.queue_size, 1000u);
   EXPECT_EQ(parameters.thresholds.max_input_age, 1.0);
   EXPECT_EQ(parameters.diagnostic_period, 1.0);
@@ -126,6 +127,7 @@ TEST(SimulatorParameters, ownParametersAreRead)
   tree["max_step_back"] = 0.25;
   tree["max_stamp_jitter"] = "1e-2";
   tree["mirror_rate"] = 25;
+  tree["motion_rate"] = 1000;
   tree["queue_size"] = "0";
   tree["max_input_age"] = 2.5;
   tree["diagnostic_period"] = 0.1;
@@ -141,6 +143,7 @@ TEST(SimulatorParameters, ownParametersAreRead)
   EXPECT_EQ(parameters.limits.max_step_back, 0.25);
   EXPECT_EQ(parameters.limits.max_stamp_jitter, 0.01);
   EXPECT_EQ(parameters.mirror_rate, 25.0);
+  EXPECT_EQ(parameters.motion_rate, 1000.0);
   EXPECT_EQ(parameters.queue_size, 0u);
   EXPECT_EQ(parameters.thresholds.max_input_age, 2.5);
   EXPECT_EQ(parameters.diagnostic_period, 0.1);
@@ -173,16 +176,16 @@ TEST(SimulatorParameters, allFaultsComeInOneMessage)
   expectFaults(tree, {"/simulator: 5 faults", "mirror_rate = 0: must be a number > 0 and <= 10000 (Hz)",
                       "queue_size = -1: must be a whole number from 0 to 1000000",
                       "max_acceleration = \"much\": must be a number > 0",
-                      "\"frequency\" is unknown: must be one of beam1", "mirror_rate, queue_size",
+                      "\"frequency\" is unknown: must be one of beam1", "mirror_rate, motion_rate, queue_size",
                       "\"mirorr_rate\" is unknown: did you mean mirror_rate?", "beam1.length = -1.0", "widht"});
 }
 
 TEST(SimulatorParameters, everyOwnParameterIsChecked)
 {
   for (const char* key :
-       {"max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter", "mirror_rate", "queue_size",
-        "max_input_age", "diagnostic_period", "warn_lost_samples", "warn_real_time_factor", "error_real_time_factor",
-        "warn_block_load", "warn_queue_share", "warn_energy_closure"})
+       {"max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter", "mirror_rate", "motion_rate",
+        "queue_size", "max_input_age", "diagnostic_period", "warn_lost_samples", "warn_real_time_factor",
+        "error_real_time_factor", "warn_block_load", "warn_queue_share", "warn_energy_closure"})
   {
     const std::vector<std::pair<XmlRpcValue, std::string>> bad = {
         {-1, "-1"}, {1.0e12, "1000000000000"}, {"nan", "\"nan\""}, {true, "true"}, {std::string(), "\"\""}};

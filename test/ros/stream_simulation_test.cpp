@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -514,6 +515,95 @@ TEST(StreamSimulation, noMoreThanAThousandChangesWait)
   EXPECT_NO_THROW(simulation.setContact(worn, 1000)) << "in place of one that waits";
   EXPECT_EQ(simulation.advance(block(0, 2000)).contact_changes.size(), 1u);
   EXPECT_NO_THROW(simulation.setContact(worn, 5000));
+}
+
+TEST(StreamSimulation, recordsTheMotionAndAnswersAsWithout)
+{
+  const std::vector<core::BasisParameters> bases = {core::AttachmentBasis{4}, core::ConjoinedBasis{4, 4}};
+  for (const core::BasisParameters& basis : bases)
+  {
+    core::SystemParameters parameters;
+    const core::BeamParameters beam{1.66e9, 954.0, 0.0529, core::Rectangle{0.00127, 0.0127}, 0.02};
+    parameters.beam1 = beam;
+    parameters.beam2 = beam;
+    std::get<core::BeamParameters>(parameters.beam2).youngs_modulus *= 10.0;
+    parameters.contact = {24309.4, 1.0e-6};
+    parameters.damping = {0.01, 0.05};
+    parameters.basis = basis;
+    const auto beams = std::make_shared<const core::SwitchedModel>(parameters);
+    StreamSimulation simulation(beams, StreamLimits{});
+    StreamSimulation expected(beams, StreamLimits{});
+    Record record;
+    Record expected_record;
+    std::uint64_t next_row = 0;
+    std::size_t open_rows = 0;
+    std::vector<double> forces;  // since the last row
+    simulation.recordMotion(7);
+    for (std::uint64_t seq = 0; seq < 20000; seq += seq % 3 == 0 ? 250 : 11)
+    {
+      const Samples excitation = block(seq, seq % 3 == 0 ? 250 : 11);
+      const StreamSimulation::Answer& answer = simulation.advance(excitation);
+      record.add(answer);
+      expected_record.add(expected.advance(excitation));
+      const StreamSimulation::Motion& motion = answer.motion;
+      const std::size_t columns = beams->structureModes().size();
+      ASSERT_EQ(motion.coordinates.size(), motion.gap.size() * columns);
+      ASSERT_EQ(motion.force.size(), motion.gap.size());
+      for (std::size_t row = 0; row < motion.gap.size(); ++row)
+      {
+        ASSERT_EQ(motion.step, 7u);
+        const std::uint64_t sample = motion.seq + 7 * row;
+        ASSERT_EQ(sample, next_row);
+        next_row += 7;
+        ASSERT_EQ(motion.gap[row], answer.gap.values[sample - seq]);
+        // The gap is what the structures and the clearance make it; in the conjoined basis the modes that are left out
+        // yield to the force as well.
+        double gap = 1.0e-6;
+        double scale = 1.0e-6;
+        for (std::size_t column = 0; column < columns; ++column)
+        {
+          const core::StructureMode& mode = beams->structureModes()[column];
+          const double share = mode.contact_deflection * motion.coordinates[row * columns + column];
+          gap += mode.structure == 1 ? share : -share;
+          scale += std::abs(share);
+        }
+        const bool open = answer.force.values[sample - seq] == 0.0;
+        open_rows += open ? 1 : 0;
+        const bool exact = open || std::holds_alternative<core::AttachmentBasis>(basis);
+        ASSERT_NEAR(gap, motion.gap[row], exact ? 1e-12 * scale : 0.1 * scale) << "row " << row;
+      }
+      for (std::size_t i = 0; i < answer.force.values.size(); ++i)
+      {
+        forces.push_back(answer.force.values[i]);
+        if ((seq + i) % 7 == 0)
+        {
+          ASSERT_EQ(motion.force[(seq + i - motion.seq) / 7], *std::max_element(forces.begin(), forces.end()));
+          forces.clear();
+        }
+      }
+    }
+    expectSame(record, expected_record);
+    EXPECT_GT(record.impacts.size(), 20u);
+    EXPECT_GT(open_rows, 1000u);
+
+    simulation.recordMotion(0);
+    EXPECT_TRUE(simulation.advance(block(20000 + 250)).motion.gap.empty());
+  }
+}
+
+TEST(StreamSimulation, recordsTheMotionOfABridgeToo)
+{
+  StreamSimulation simulation(model(), StreamLimits{});
+  simulation.recordMotion(10);
+  simulation.advance(block(0));
+  const StreamSimulation::Motion& motion = simulation.advance(block(505)).motion;
+  EXPECT_EQ(motion.seq, 250u);
+  EXPECT_EQ(motion.stamp, begin + 250 * nanoseconds);
+  EXPECT_EQ(motion.gap.size(), 51u);  // 250 ... 750
+  simulation.reset();
+  const StreamSimulation::Motion& after = simulation.advance(block(3, 12)).motion;
+  EXPECT_EQ(after.seq, 10u);
+  EXPECT_EQ(after.gap.size(), 1u);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <memory>
 
+#include <Eigen/Core>
+
 #include "vibro_impact/core/energy_account.h"
 #include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
@@ -51,6 +53,10 @@ public:
 
   /// The motion at the last sample taken (its gap and force are those of advance()), or before the first one.
   HistorySample sample() const;
+
+  /// The coordinates of SwitchedModel::structureModes() at the last sample taken, or before the first one, m kg^1/2:
+  /// how both structures are bent.
+  void structureCoordinates(Eigen::VectorXd& coordinates) const;
 
   /// Since rest or start(), up to the last sample taken.
   EnergyAccount energyAccount() const;

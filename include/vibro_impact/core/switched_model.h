@@ -36,8 +36,9 @@ struct LinearState
 /// A mode of one structure on its own.
 struct StructureMode
 {
-  int structure = 1;  ///< 1 or 2
-  int number = 0;     ///< as in Structure::mode(); 0: the attachment shape
+  int structure = 1;                ///< 1 or 2
+  int number = 0;                   ///< as in Structure::mode(); 0: the attachment shape
+  double contact_deflection = 0.0;  ///< its shape at the contact point, kg^-1/2
 };
 
 /// The immutable switched model: two linear states, the mapping between them, and the contact. Safe to share.
@@ -98,6 +99,19 @@ public:
     return contact_energy_.at(static_cast<std::size_t>(structure - 1));
   }
 
+  /// The modes of the structures on their own that the states are made of. A point of structure i where these have the
+  /// shapes phi_m is displaced by the sum of phi_m times coordinate m over those of that structure.
+  const std::vector<StructureMode>& structureModes() const
+  {
+    return structure_modes_;
+  }
+  /// Their coordinates (m kg^1/2) = this matrix times those of S0, or of S1 if `in_contact`. In the conjoined basis the
+  /// modes in contact hold more of them than S0 keeps.
+  const Eigen::MatrixXd& structureCoordinates(bool in_contact) const
+  {
+    return in_contact ? contact_structure_coordinates_ : structure_coordinates_;
+  }
+
   /// Displacement and velocity of the S0 coordinates (free().size() each) in the given motion. Throws
   /// std::invalid_argument for a mode that the basis does not have, and for a value that is not finite; the message
   /// names both.
@@ -123,6 +137,7 @@ private:
   bool lossless_ = false;
   std::vector<StructureMode> structure_modes_;  // of both structures
   Eigen::MatrixXd structure_coordinates_;       // theirs = this matrix times those of S0; its columns are orthonormal
+  Eigen::MatrixXd contact_structure_coordinates_;  // theirs = this matrix times those of S1
   std::array<StructureEnergy, 2> free_energy_;
   std::array<StructureEnergy, 2> contact_energy_;
 };

@@ -8,6 +8,7 @@
 #include <vibro_impact/Gap.h>
 #include <vibro_impact/Impact.h>
 #include <vibro_impact/ModelInfo.h>
+#include <vibro_impact/StructureMotion.h>
 
 #include "vibro_impact/core/switched_model.h"
 #include "vibro_impact/ros/samples.h"
@@ -29,6 +30,9 @@ void toMessage(const Samples& samples, BaseExcitation& message);
 void toMessage(const Samples& samples, Gap& message);
 void toMessage(const Samples& samples, ContactForce& message);
 void toMessage(const StampedImpact& impact, Impact& message);
+/// `model` is the one that moves, `sample_period` (s) that of the stream.
+void toMessage(const StreamSimulation::Motion& motion, const core::SwitchedModel& model, double sample_period,
+               StructureMotion& message);
 /// `configuration` is the YAML text that gives `model`; stamp, seq and number are zero: it holds from the start.
 void toMessage(const core::SwitchedModel& model, const std::string& configuration, const std::string& version,
                ModelInfo& message);

@@ -54,6 +54,9 @@ private:
   /// The motion ends; `reason`: why the next one begins.
   const StreamSimulation::Answer& rest(std::uint8_t cause, const std::string& reason);
   void publish(const StreamSimulation::Answer& answer);
+  /// Whether somebody wants the motion; then every how many samples, else 0.
+  std::uint64_t motionStep(double sample_period) const;
+  void publishMotion(const StreamSimulation::Answer& answer);
   void publishStart(const StreamSimulation::Answer& answer);
   /// What holds from sample `seq` on, at `stamp`.
   void publishModelInfo(const core::SwitchedModel& model, std::uint64_t seq, const ros::Time& stamp);
@@ -77,6 +80,7 @@ private:
   OutputQueue gap_;
   OutputQueue force_;
   OutputQueue impact_;
+  ros::Publisher motion_publisher_;
   ros::Publisher model_info_publisher_;
   ros::Publisher stream_start_publisher_;
   ros::Publisher wrench_publisher_;

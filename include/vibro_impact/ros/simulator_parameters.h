@@ -15,10 +15,12 @@ namespace vibro_impact::graph
 /// Everything that the private parameters of a simulator say.
 struct SimulatorParameters
 {
-  core::SystemParameters system;    ///< beam1, beam2, contact, damping, basis
-  InputParameters input;            ///< input, axis, frame_id, sample_period, offset, offset_duration
-  StreamLimits limits;              ///< max_acceleration, max_bridged_gap, max_step_back, max_stamp_jitter
-  double mirror_rate = 50.0;        ///< messages of each slow mirror per second of the stream's time, Hz
+  core::SystemParameters system;  ///< beam1, beam2, contact, damping, basis
+  InputParameters input;          ///< input, axis, frame_id, sample_period, offset, offset_duration
+  StreamLimits limits;            ///< max_acceleration, max_bridged_gap, max_step_back, max_stamp_jitter
+  double mirror_rate = 50.0;      ///< messages of each slow mirror per second of the stream's time, Hz
+  double motion_rate =
+      0.0;  ///< rows of `motion` per second of the stream's time, Hz; 0: 64 per period of the lowest natural frequency
   std::uint32_t queue_size = 1000;  ///< messages in the queue of each subscriber and publisher; 0: no limit
   DiagnosticThresholds thresholds;  ///< max_input_age, warn_..., error_...
   double diagnostic_period = 1.0;   ///< s of wall time

@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "vibro_impact/core/history.h"
 #include "vibro_impact/core/impact.h"
 #include "vibro_impact/core/simulation.h"
@@ -49,6 +51,18 @@ public:
     std::shared_ptr<const core::SwitchedModel> model;
   };
 
+  /// How both structures are bent, at every sample whose number is a multiple of `step`; rows of a bridged gap come
+  /// first. Nothing where none is recorded.
+  struct Motion
+  {
+    std::uint64_t step = 0;
+    std::uint64_t seq = 0;            ///< number of the sample of the first row
+    Stamp stamp = 0;                  ///< of that sample
+    std::vector<double> coordinates;  ///< of core::SwitchedModel::structureModes(), row after row, m kg^1/2
+    std::vector<double> gap;          ///< of each row, m
+    std::vector<double> force;        ///< greatest at the samples since the row before, N
+  };
+
   /// What one block, reset() or finish() brought.
   struct Answer
   {
@@ -57,6 +71,7 @@ public:
     Samples force;                       ///< N, likewise
     std::vector<StampedImpact> impacts;  ///< in order of release
     std::vector<ContactChange> contact_changes;
+    Motion motion;
     std::uint64_t switch_limits = 0;  ///< sample intervals in which the bound on switches was reached
   };
 
@@ -82,6 +97,12 @@ public:
     observer_ = &observer;
   }
 
+  /// From now on answers hold the motion at every `step`-th sample; 0: none. Nothing else in them depends on it.
+  void recordMotion(std::uint64_t step)
+  {
+    motion_step_ = step;
+  }
+
   /// Back to rest; the next block starts a stream. An open episode is answered as cut short.
   const Answer& reset();
 
@@ -103,6 +124,8 @@ private:
   void onImpact(const core::Impact& impact) override;
   void advanceSamples(std::uint64_t seq, const double* acceleration, std::size_t count, double* gap, double* force);
   void take(const double* acceleration, std::size_t count, double* gap, double* force);
+  std::uint64_t untilRow(std::uint64_t seq) const;
+  void recordRow(std::uint64_t seq, double gap);
   bool takeContact(std::uint64_t seq);
   void noteContactChange(std::uint64_t seq);
   void bridge(std::uint64_t seq, std::uint64_t missing, double from, double to);
@@ -118,6 +141,9 @@ private:
   std::uint64_t first_seq_ = 0;  ///< the sample that found the model at rest
   bool carried_over_ = false;    ///< the open episode began before the block taken last
   MotionObserver* observer_ = nullptr;
+  std::uint64_t motion_step_ = 0;
+  double greatest_force_ = 0.0;  ///< at the samples since the last row
+  Eigen::VectorXd coordinates_;
   Answer answer_;
 };
 
