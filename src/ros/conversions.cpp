@@ -106,6 +106,7 @@ void toMessage(const StreamSimulation::Motion& motion, const core::SwitchedModel
   message.coordinates = motion.coordinates;
   message.gap = motion.gap;
   message.force = motion.force;
+  message.acceleration = motion.acceleration;
 }
 
 void toMessage(const core::SwitchedModel& model, const std::string& configuration, const std::string& version,

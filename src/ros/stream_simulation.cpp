@@ -164,7 +164,7 @@ void StreamSimulation::advanceSamples(std::uint64_t seq, const double* accelerat
       greatest_force_ = std::max(greatest_force_, *std::max_element(force, force + piece));
       if (untilRow(seq) + 1 == piece)
       {
-        recordRow(seq + piece - 1, gap[piece - 1]);
+        recordRow(seq + piece - 1, gap[piece - 1], acceleration[piece - 1]);
       }
     }
     seq += piece;
@@ -182,7 +182,7 @@ std::uint64_t StreamSimulation::untilRow(std::uint64_t seq) const
   return past == 0 ? 0 : motion_step_ - past;
 }
 
-void StreamSimulation::recordRow(std::uint64_t seq, double gap)
+void StreamSimulation::recordRow(std::uint64_t seq, double gap, double acceleration)
 {
   Motion& motion = answer_.motion;
   if (motion.gap.empty())
@@ -195,6 +195,7 @@ void StreamSimulation::recordRow(std::uint64_t seq, double gap)
   motion.coordinates.insert(motion.coordinates.end(), coordinates_.data(), coordinates_.data() + coordinates_.size());
   motion.gap.push_back(gap);
   motion.force.push_back(greatest_force_);
+  motion.acceleration.push_back(acceleration);
   greatest_force_ = 0.0;
 }
 
@@ -258,6 +259,7 @@ void StreamSimulation::clearAnswer()
   answer_.motion.coordinates.clear();
   answer_.motion.gap.clear();
   answer_.motion.force.clear();
+  answer_.motion.acceleration.clear();
   answer_.switch_limits = 0;
 }
 

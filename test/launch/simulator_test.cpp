@@ -547,6 +547,7 @@ TEST_F(SimulatorTest, tellsTheMotionToWhoAsksAndAnswersAsWithout)
       EXPECT_EQ(motions[i].coordinates, expected[i].coordinates);
       EXPECT_EQ(motions[i].gap, expected[i].gap);
       EXPECT_EQ(motions[i].force, expected[i].force);
+      EXPECT_EQ(motions[i].acceleration, expected[i].acceleration);
     }
   }
   // Nobody listens any more.

@@ -144,7 +144,7 @@ TEST(StructureMotionConversion, saysWhatEachNumberIs)
   vibro_impact::StructureMotion message;
   graph::toMessage(
       graph::StreamSimulation::Motion{
-          4, 1000000000008ull, stamp, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0.5, 0.6}, {0.0, 7.0}},
+          4, 1000000000008ull, stamp, {1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, {0.5, 0.6}, {0.0, 7.0}, {9.0, 8.0}},
       model, 2.0e-5, message);
   EXPECT_EQ(message.header.stamp, ros::Time(1700000000, 123456789));
   EXPECT_EQ(message.header.frame_id, "base_frame");
@@ -159,6 +159,7 @@ TEST(StructureMotionConversion, saysWhatEachNumberIs)
   EXPECT_EQ(message.coordinates, (std::vector<double>{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
   EXPECT_EQ(message.gap, (std::vector<double>{0.5, 0.6}));
   EXPECT_EQ(message.force, (std::vector<double>{0.0, 7.0}));
+  EXPECT_EQ(message.acceleration, (std::vector<double>{9.0, 8.0}));
 }
 
 TEST(ModelInfoConversion, saysWhatIsComputed)

@@ -556,6 +556,7 @@ TEST(StreamSimulation, recordsTheMotionAndAnswersAsWithout)
         ASSERT_EQ(sample, next_row);
         next_row += 7;
         ASSERT_EQ(motion.gap[row], answer.gap.values[sample - seq]);
+        ASSERT_EQ(motion.acceleration[row], excitation.values[sample - seq]);
         // The gap is what the structures and the clearance make it; in the conjoined basis the modes that are left out
         // yield to the force as well.
         double gap = 1.0e-6;

@@ -56,11 +56,12 @@ public:
   struct Motion
   {
     std::uint64_t step = 0;
-    std::uint64_t seq = 0;            ///< number of the sample of the first row
-    Stamp stamp = 0;                  ///< of that sample
-    std::vector<double> coordinates;  ///< of core::SwitchedModel::structureModes(), row after row, m kg^1/2
-    std::vector<double> gap;          ///< of each row, m
-    std::vector<double> force;        ///< greatest at the samples since the row before, N
+    std::uint64_t seq = 0;             ///< number of the sample of the first row
+    Stamp stamp = 0;                   ///< of that sample
+    std::vector<double> coordinates;   ///< of core::SwitchedModel::structureModes(), row after row, m kg^1/2
+    std::vector<double> gap;           ///< of each row, m
+    std::vector<double> force;         ///< greatest at the samples since the row before, N
+    std::vector<double> acceleration;  ///< of the base at each row, m/s^2
   };
 
   /// What one block, reset() or finish() brought.
@@ -125,7 +126,7 @@ private:
   void advanceSamples(std::uint64_t seq, const double* acceleration, std::size_t count, double* gap, double* force);
   void take(const double* acceleration, std::size_t count, double* gap, double* force);
   std::uint64_t untilRow(std::uint64_t seq) const;
-  void recordRow(std::uint64_t seq, double gap);
+  void recordRow(std::uint64_t seq, double gap, double acceleration);
   bool takeContact(std::uint64_t seq);
   void noteContactChange(std::uint64_t seq);
   void bridge(std::uint64_t seq, std::uint64_t missing, double from, double to);
