@@ -136,6 +136,7 @@ std::vector<double> Beam::staticShape(int kept, const std::vector<double>& x) co
     }
   }
   std::vector<double> deflection;
+  deflection.reserve(sum.size());
   for (const Precise value : sum)
   {
     deflection.push_back(static_cast<double>(value) * compliance_unit_);

@@ -13,6 +13,7 @@ namespace
 std::vector<double> positionsAlong(const BeamParameters& beam, int points)
 {
   std::vector<double> positions;
+  positions.reserve(static_cast<std::size_t>(points) + 3);
   for (int i = 0; i < points; ++i)
   {
     positions.push_back(i + 1 == points ? beam.length : beam.length * i / (points - 1));
