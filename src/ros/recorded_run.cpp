@@ -1,22 +1,21 @@
 #include "vibro_impact/ros/recorded_run.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include <geometry_msgs/AccelStamped.h>
 #include <ros/message_traits.h>
-#include <rosbag/bag.h>
-#include <rosbag/query.h>
-#include <rosbag/view.h>
 #include <sensor_msgs/Imu.h>
 #include <sys/stat.h>
 #include <vibro_impact/ContactForce.h>
 #include <vibro_impact/Gap.h>
 
-#include "bag_structure.h"
+#include "bag_file.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/ros/checked_stream.h"
 
@@ -48,22 +47,6 @@ void requireBag(const std::string& path)
   if (magic != expected)
   {
     throw config::Error(path + ": is not a bag");
-  }
-}
-
-void openBag(rosbag::Bag& bag, const std::string& path)
-{
-  try
-  {
-    bag.open(path, rosbag::bagmode::Read);
-  }
-  catch (const rosbag::BagUnindexedException&)
-  {
-    throw config::Error(path + ": has no index, the recording did not end properly; 'rosbag reindex' repairs it");
-  }
-  catch (const std::runtime_error& error)
-  {
-    throw config::Error(damaged(path, error.what()));
   }
 }
 
@@ -102,25 +85,58 @@ BlockHead headOf(const Block& block, std::size_t samples)
   return {block.seq, samples, block.header.stamp, block.sample_period};
 }
 
-// What is certain of a message by its topic's type, unless the type meant something else when it was recorded.
-template <typename Message>
-Message messageOf(const rosbag::MessageInstance& instance)
+// A message as it was recorded.
+struct RecordedMessage
 {
-  if (instance.getMD5Sum() != ros::message_traits::md5sum<Message>())
+  const BagConnection& connection;
+  BagMessage bytes;
+};
+
+// Its topic's type may have meant something else when it was recorded. The message is one to be written over, whose
+// memory serves again.
+template <typename Message>
+const Message& decode(const RecordedMessage& recorded, Message& message)
+{
+  const BagConnection& connection = recorded.connection;
+  if (connection.md5sum != ros::message_traits::md5sum<Message>())
   {
-    throw config::Error("topic " + instance.getTopic() + ": was recorded with another definition of " +
-                        instance.getDataType() + " (" + instance.getMD5Sum() + " instead of " +
+    throw config::Error("topic " + connection.topic + ": was recorded with another definition of " +
+                        connection.datatype + " (" + connection.md5sum + " instead of " +
                         ros::message_traits::md5sum<Message>() + ")");
   }
-  // MessageInstance::instantiate() trusts the lengths in a message.
-  std::vector<std::uint8_t> bytes(instance.size());
-  ros::serialization::OStream copy(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  instance.write(copy);
-  Message message;
-  CheckedStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  CheckedStream stream(recorded.bytes.data, recorded.bytes.size);
   stream.next(message);
   return message;
 }
+
+// The chunks used last: bags whose messages lie in another order than that of their times, and several at once, go to
+// and fro between a few.
+class ChunkCache
+{
+public:
+  const BagChunk& get(const BagFile& bag, std::uint32_t chunk)
+  {
+    const auto same = [&](const Slot& slot) { return slot.bag == &bag && slot.number == chunk; };
+    auto found = std::find_if(slots_.begin(), slots_.end(), same);
+    if (found == slots_.end())
+    {
+      found = std::prev(slots_.end());
+      *found = {&bag, chunk, nullptr};  // before the next one is loaded: its memory serves again
+      found->chunk = bag.load(chunk);
+    }
+    std::rotate(slots_.begin(), found, std::next(found));
+    return *slots_.front().chunk;
+  }
+
+private:
+  struct Slot
+  {
+    const BagFile* bag = nullptr;
+    std::uint32_t number = 0;
+    std::unique_ptr<const BagChunk> chunk;
+  };
+  std::array<Slot, 4> slots_;  // the one used last first
+};
 }  // namespace
 
 struct RecordedRun::Implementation
@@ -135,22 +151,24 @@ struct RecordedRun::Implementation
     {
       names += (names.empty() ? "" : ", ") + path;
       requireBag(path);
-      requireSoundBag(path);
-      bags.push_back(std::make_unique<rosbag::Bag>());
-      openBag(*bags.back(), path);
+      bags.push_back(std::make_unique<const BagFile>(path));
     }
-    try
+  }
+
+  std::set<std::string> topicsOf(const std::string& type) const
+  {
+    std::set<std::string> topics_of_type;
+    for (const auto& bag : bags)
     {
-      everything = std::make_unique<rosbag::View>();
-      for (const auto& bag : bags)
+      for (const auto& [id, connection] : bag->connections())
       {
-        everything->addQuery(*bag);
+        if (connection.datatype == type)
+        {
+          topics_of_type.insert(connection.topic);
+        }
       }
     }
-    catch (const std::runtime_error& error)
-    {
-      throw config::Error(damaged(names, error.what()));
-    }
+    return topics_of_type;
   }
 
   template <typename Message>
@@ -159,15 +177,12 @@ struct RecordedRun::Implementation
     const std::string type = ros::message_traits::datatype<Message>();
     std::set<std::string> all;
     std::set<std::string> inside;
-    for (const rosbag::ConnectionInfo* connection : everything->getConnections())
+    for (const std::string& topic : topicsOf(type))
     {
-      if (connection->datatype == type)
+      all.insert(topic);
+      if (isInside(topic, name_space))
       {
-        all.insert(connection->topic);
-        if (isInside(connection->topic, name_space))
-        {
-          inside.insert(connection->topic);
-        }
+        inside.insert(topic);
       }
     }
     if (inside.empty() && !required)
@@ -194,41 +209,63 @@ struct RecordedRun::Implementation
   std::string require(const std::string& topic) const
   {
     const std::string type = ros::message_traits::datatype<Message>();
-    std::set<std::string> all;
-    for (const rosbag::ConnectionInfo* connection : everything->getConnections())
+    const std::set<std::string> all = topicsOf(type);
+    for (const std::string& name : all)
     {
-      if (connection->datatype == type)
+      if (absolute(name) == absolute(topic))
       {
-        if (absolute(connection->topic) == absolute(topic))
-        {
-          return connection->topic;
-        }
-        all.insert(connection->topic);
+        return name;
       }
     }
     throw config::Error(names + ": holds no topic " + topic + " of type " + type +
                         (all.empty() ? "" : " (but " + list(all) + ")"));
   }
 
-  void read(const std::vector<std::string>& wanted, const Progress& progress,
-            const std::function<void(const rosbag::MessageInstance&)>& take) const
+  struct Entry
   {
+    BagEntry entry;
+    std::uint32_t bag = 0;
+  };
+
+  /// The messages of these topics, in the order of recording; those of one time in that of the files.
+  std::vector<Entry> entriesOf(const std::set<std::string>& wanted) const
+  {
+    std::vector<Entry> entries;
+    for (std::uint32_t i = 0; i < bags.size(); ++i)
+    {
+      std::set<std::uint32_t> connections;
+      for (const auto& [id, connection] : bags[i]->connections())
+      {
+        if (wanted.count(connection.topic) != 0)
+        {
+          connections.insert(id);
+        }
+      }
+      for (const BagEntry& entry : bags[i]->entries(connections))
+      {
+        entries.push_back({entry, i});
+      }
+    }
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const Entry& a, const Entry& b) { return a.entry.time < b.entry.time; });
+    return entries;
+  }
+
+  void read(const std::set<std::string>& wanted, const Progress& progress,
+            const std::function<void(const RecordedMessage&)>& take) const
+  {
+    const std::vector<Entry> entries = entriesOf(wanted);
+    ChunkCache chunks;
     try
     {
-      rosbag::View view;
-      for (const auto& bag : bags)
+      for (std::size_t i = 0; i < entries.size(); ++i)
       {
-        view.addQuery(*bag, rosbag::TopicQuery(wanted));
-      }
-      const double total = static_cast<double>(view.size());
-      double done = 0.0;
-      for (const rosbag::MessageInstance& instance : view)
-      {
-        take(instance);
-        done += 1.0;
+        const auto& [entry, bag] = entries[i];
+        const BagChunk& chunk = chunks.get(*bags[bag], entry.chunk);
+        take({bags[bag]->connections().at(entry.connection), chunk.message(entry)});
         if (progress)
         {
-          progress(done / total);
+          progress(static_cast<double>(i + 1) / static_cast<double>(entries.size()));
         }
       }
     }
@@ -244,13 +281,13 @@ struct RecordedRun::Implementation
   {
     if (!topic.empty())
     {
-      read({topic}, {}, [&](const rosbag::MessageInstance& instance) { sink(messageOf<Message>(instance)); });
+      Message message;
+      read({topic}, {}, [&](const RecordedMessage& recorded) { sink(decode(recorded, message)); });
     }
   }
 
   std::string names;  // of the bags, for messages
-  std::vector<std::unique_ptr<rosbag::Bag>> bags;
-  std::unique_ptr<rosbag::View> everything;  // of everything, for its connections
+  std::vector<std::unique_ptr<const BagFile>> bags;
   RecordedTopics topics;
 };
 
@@ -285,44 +322,50 @@ const RecordedTopics& RecordedRun::topics() const
 void RecordedRun::read(RecordingSink& sink, const Progress& progress) const
 {
   const RecordedTopics& topics = implementation_->topics;
-  std::vector<std::string> wanted;
+  std::set<std::string> wanted;
   for (const std::string* topic : {&topics.base_excitation, &topics.gap, &topics.contact_force, &topics.model_info,
                                    &topics.impact, &topics.stream_start})
   {
     if (!topic->empty())
     {
-      wanted.push_back(*topic);
+      wanted.insert(*topic);
     }
   }
+  BaseExcitation excitation;
+  Gap gap;
+  ContactForce force;
+  Impact impact;
+  StreamStart start;
+  ModelInfo info;
   implementation_->read(wanted, progress,
-                        [&](const rosbag::MessageInstance& instance)
+                        [&](const RecordedMessage& recorded)
                         {
-                          const std::string& topic = instance.getTopic();
+                          const std::string& topic = recorded.connection.topic;
                           if (topic == topics.base_excitation)
                           {
-                            sink.onExcitation(messageOf<BaseExcitation>(instance));
+                            sink.onExcitation(decode(recorded, excitation));
                           }
                           else if (topic == topics.gap)
                           {
-                            const auto block = messageOf<Gap>(instance);
-                            sink.onGap(headOf(block, block.gap.size()), block.gap);
+                            decode(recorded, gap);
+                            sink.onGap(headOf(gap, gap.gap.size()), gap.gap);
                           }
                           else if (topic == topics.contact_force)
                           {
-                            const auto block = messageOf<ContactForce>(instance);
-                            sink.onContactForce(headOf(block, block.force.size()), block.force);
+                            decode(recorded, force);
+                            sink.onContactForce(headOf(force, force.force.size()), force.force);
                           }
                           else if (topic == topics.impact)
                           {
-                            sink.onImpact(messageOf<Impact>(instance));
+                            sink.onImpact(decode(recorded, impact));
                           }
                           else if (topic == topics.stream_start)
                           {
-                            sink.onStreamStart(messageOf<StreamStart>(instance));
+                            sink.onStreamStart(decode(recorded, start));
                           }
                           else
                           {
-                            sink.onModelInfo(messageOf<ModelInfo>(instance));
+                            sink.onModelInfo(decode(recorded, info));
                           }
                         });
 }
@@ -334,8 +377,9 @@ void RecordedRun::readModelInfo(const std::function<void(const ModelInfo&)>& sin
 
 void RecordedRun::readExcitation(const std::function<void(const BaseExcitation&)>& sink, const Progress& progress) const
 {
+  BaseExcitation block;
   implementation_->read({implementation_->topics.base_excitation}, progress,
-                        [&](const rosbag::MessageInstance& instance) { sink(messageOf<BaseExcitation>(instance)); });
+                        [&](const RecordedMessage& recorded) { sink(decode(recorded, block)); });
 }
 
 template <typename Message>
