@@ -48,6 +48,40 @@ VIBRO_IMPACT_INLINE void addSizes(Packet& sum, const Packet& weights, const Pack
   sum += weights * (Packet(Bits(x) & magnitude) + Packet(Bits(y) & magnitude));
 }
 
+/// Some rows of addProducts(): few enough that the sums stay in registers.
+template <std::size_t first, std::size_t last>
+VIBRO_IMPACT_INLINE void addProductRows(const ProductRow* rows, std::size_t count,
+                                        std::array<ProductRow, most_products>& sums)
+{
+  constexpr std::size_t width = (last - 1) / lanes + 1;
+  Packet sum[last - first][width];
+  for (std::size_t k = first; k < last; ++k)
+  {
+    for (std::size_t p = 0; p <= k / lanes; ++p)
+    {
+      sum[k - first][p] = packets(sums[k].data())[p];
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Packet* const row = packets(rows[i].data());
+    for (std::size_t k = first; k < last; ++k)
+    {
+      for (std::size_t p = 0; p <= k / lanes; ++p)
+      {
+        sum[k - first][p] += rows[i][k] * row[p];
+      }
+    }
+  }
+  for (std::size_t k = first; k < last; ++k)
+  {
+    for (std::size_t p = 0; p <= k / lanes; ++p)
+    {
+      packets(sums[k].data())[p] = sum[k - first][p];
+    }
+  }
+}
+
 /// `count` packets of exponentials from n on, side by side in registers: each waits for its own last product only.
 template <int count>
 VIBRO_IMPACT_INLINE void growPackets(const Growth& growth, std::uint64_t tabulated, double series, const double* from,
@@ -440,6 +474,21 @@ void multiplyTwo(const double* matrix, Eigen::Index rows, Eigen::Index columns, 
     }
     *packets(x_to + row) = x_sum;
     *packets(y_to + row) = y_sum;
+  }
+}
+
+VIBRO_IMPACT_CLONES
+void addProducts(const ProductRow* rows, std::size_t count, std::size_t columns,
+                 std::array<ProductRow, most_products>& sums)
+{
+  addProductRows<0, 6>(rows, count, sums);
+  if (columns > 6)
+  {
+    addProductRows<6, 8>(rows, count, sums);
+  }
+  if (columns > 8)
+  {
+    addProductRows<8, 10>(rows, count, sums);
   }
 }
 

@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "lanes.h"
+
 namespace vibro_impact::core
 {
 namespace
@@ -15,6 +17,9 @@ namespace
 constexpr int most = 2 * SineFitter::most_harmonics + 4;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
+
+// Samples after which the rotation is computed anew.
+constexpr std::size_t renewal = 256;
 
 // Half way between the first and the last of `count` samples, in samples.
 double middleOf(std::size_t count)
@@ -96,39 +101,41 @@ void SineFitter::accumulate(const double* samples, std::size_t count)
   const double step_sin = std::sin(step);
   double c = 0.0;
   double s = 0.0;
-  std::array<double, columns> row{};
-  std::array<std::array<double, columns>, columns> sums{};
-  row[0] = 1.0;
-  for (std::size_t i = 0; i < count; ++i)
+  // A table at a time, whose products are then summed by as many at once as the processor can.
+  constexpr std::size_t most_rows = 64;
+  static_assert(renewal % most_rows == 0, "the rotation is renewed with a table");
+  std::array<ProductRow, most_rows> rows{};
+  std::array<ProductRow, most_products> sums{};
+  for (std::size_t first = 0; first < count; first += most_rows)
   {
-    const double position = static_cast<double>(added_ + i) - middle;
+    const std::size_t last = std::min(count, first + most_rows);
     // The rotation from sample to sample is renewed before its rounding errors add up.
-    if (i % 256 == 0)
+    if (first % renewal == 0)
     {
+      const double position = static_cast<double>(added_ + first) - middle;
       c = std::cos(step * position);
       s = std::sin(step * position);
     }
-    row[1] = c;
-    row[2] = s;
-    for (std::size_t h = 1; h < harmonics; ++h)
+    for (std::size_t i = first; i < last; ++i)
     {
-      row[2 * h + 1] = row[2 * h - 1] * c - row[2 * h] * s;
-      row[2 * h + 2] = row[2 * h] * c + row[2 * h - 1] * s;
-    }
-    const double tau = position / half;
-    row[columns - 3] = tau * c;
-    row[columns - 2] = tau * s;
-    row[columns - 1] = samples[i];
-    for (std::size_t k = 0; k < columns; ++k)
-    {
-      for (std::size_t l = 0; l <= k; ++l)
+      ProductRow& row = rows[i - first];
+      row[0] = 1.0;
+      row[1] = c;
+      row[2] = s;
+      for (std::size_t h = 1; h < harmonics; ++h)
       {
-        sums[k][l] += row[k] * row[l];
+        row[2 * h + 1] = row[2 * h - 1] * c - row[2 * h] * s;
+        row[2 * h + 2] = row[2 * h] * c + row[2 * h - 1] * s;
       }
+      const double tau = (static_cast<double>(added_ + i) - middle) / half;
+      row[columns - 3] = tau * c;
+      row[columns - 2] = tau * s;
+      row[columns - 1] = samples[i];
+      const double next_cos = c * step_cos - s * step_sin;
+      s = s * step_cos + c * step_sin;
+      c = next_cos;
     }
-    const double next_cos = c * step_cos - s * step_sin;
-    s = s * step_cos + c * step_sin;
-    c = next_cos;
+    addProducts(rows.data(), last - first, columns, sums);
   }
   for (std::size_t k = 0; k < columns; ++k)
   {
