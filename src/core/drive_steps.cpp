@@ -741,8 +741,13 @@ struct DriveStepFinder::Implementation
       return;
     }
     weigh(run);
-    run = withoutScraps(run, cutIntoLines(run));
-    const std::vector<Line> lines = refineCuts(run, cutIntoLines(run));
+    std::vector<Line> lines = cutIntoLines(run);
+    if (std::vector<Cycle> kept = withoutScraps(run, lines); kept.size() < run.size())
+    {
+      run = std::move(kept);
+      lines = cutIntoLines(run);
+    }
+    lines = refineCuts(run, std::move(lines));
     const std::vector<bool> constant = constantLines(run, lines);
     const StretchSearch search(run, options);
     std::vector<Candidate> candidates;

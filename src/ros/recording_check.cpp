@@ -53,16 +53,16 @@ RecordingCheck::RecordingCheck(RecordedTopics topics) : topics_(std::move(topics
 
 bool RecordingCheck::takeExcitation(const BlockHead& block)
 {
-  const std::string place = text("topic ", topics_.base_excitation, ", seq ", block.seq, ": ");
+  const auto place = [&] { return text("topic ", topics_.base_excitation, ", seq ", block.seq, ": "); };
   // Written so that NaN fails, too.
   if (!(block.sample_period >= StreamRules::min_sample_period && block.sample_period <= StreamRules::max_sample_period))
   {
-    throw config::Error(text(place, "sample_period is ", block.sample_period, " s, must be in [",
+    throw config::Error(text(place(), "sample_period is ", block.sample_period, " s, must be in [",
                              StreamRules::min_sample_period, ", ", StreamRules::max_sample_period, "] s"));
   }
   if (block.seq > last_seq || block.samples > last_seq - block.seq)
   {
-    throw config::Error(text(place, "the number is too great, must be at most ", last_seq));
+    throw config::Error(text(place(), "the number is too great, must be at most ", last_seq));
   }
   if (excitation_.empty())
   {
@@ -71,7 +71,7 @@ bool RecordingCheck::takeExcitation(const BlockHead& block)
   }
   const BlockHead& before = excitation_.back();
   const std::uint64_t expected = before.end();
-  const std::string advice = "; cut the recording there with 'rosbag filter' and extract the parts one by one";
+  const char* const advice = "; cut the recording there with 'rosbag filter' and extract the parts one by one";
   if (block.seq < expected)
   {
     const BlockHead* same = find(excitation_, block.seq);
@@ -81,19 +81,19 @@ bool RecordingCheck::takeExcitation(const BlockHead& block)
       return false;
     }
     throw config::Error(
-        text(place, "the stream restarts, seq ", expected, " was expected (header.stamp ", block.stamp, ")", advice));
+        text(place(), "the stream restarts, seq ", expected, " was expected (header.stamp ", block.stamp, ")", advice));
   }
   if (block.sample_period != before.sample_period)
   {
-    throw config::Error(
-        text(place, "sample_period changes from ", before.sample_period, " s to ", block.sample_period, " s", advice));
+    throw config::Error(text(place(), "sample_period changes from ", before.sample_period, " s to ",
+                             block.sample_period, " s", advice));
   }
   const double elapsed = block.stamp.toSec() - before.stamp.toSec();  // further than a ros::Duration reaches
   const double counted = static_cast<double>(block.seq - before.seq) * block.sample_period;
   if (std::abs(elapsed - counted) > StreamLimits{}.max_stamp_jitter)
   {
-    throw config::Error(
-        text(place, "header.stamp jumps, it is ", elapsed - counted, " s off what the count of samples says", advice));
+    throw config::Error(text(place(), "header.stamp jumps, it is ", elapsed - counted,
+                             " s off what the count of samples says", advice));
   }
   if (block.seq > expected)
   {

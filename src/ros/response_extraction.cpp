@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "step_search.h"
 #include "text.h"
 #include "vibro_impact/config/error.h"
 #include "vibro_impact/core/parameters.h"
@@ -85,9 +86,9 @@ public:
     {
       return;
     }
-    if (!finder_)
+    if (!search_)
     {
-      finder_.emplace(block.sample_period, options_);
+      search_.emplace(block.sample_period, options_);
     }
     const auto bad = std::find_if(block.acceleration.begin(), block.acceleration.end(),
                                   [](double value) { return !std::isfinite(value); });
@@ -95,7 +96,7 @@ public:
     {
       check_.refuseExcitation(head, "holds a sample that is not finite");
     }
-    finder_->add(block.seq, block.acceleration.data(), block.acceleration.size());
+    search_->add(block.seq, block.acceleration.data(), block.acceleration.size());
   }
 
   void onGap(const BlockHead& block, const std::vector<double>& /*gap*/) override
@@ -148,26 +149,36 @@ public:
   // After summary().
   std::vector<core::FoundStep> steps()
   {
-    return finder_->finish();
+    return search_->finish();
+  }
+
+  // After steps().
+  const StepSearch& search() const
+  {
+    return *search_;
   }
 
   // On the stream's time axis, by ascending onset.
   std::vector<core::TimedImpact> impacts(double sample_period) const
   {
     std::vector<core::TimedImpact> timed;
+    timed.reserve(impacts_.size());
     for (const Impact& message : impacts_)
     {
       timed.push_back({static_cast<double>(message.seq) * sample_period + message.offset, fromMessage(message).impact});
     }
-    std::stable_sort(timed.begin(), timed.end(),
-                     [](const core::TimedImpact& a, const core::TimedImpact& b) { return a.onset < b.onset; });
+    const auto earlier = [](const core::TimedImpact& a, const core::TimedImpact& b) { return a.onset < b.onset; };
+    if (!std::is_sorted(timed.begin(), timed.end(), earlier))
+    {
+      std::stable_sort(timed.begin(), timed.end(), earlier);
+    }
     return timed;
   }
 
 private:
   RecordingCheck check_;
   core::StepSearchOptions options_;
-  std::optional<core::DriveStepFinder> finder_;
+  std::optional<StepSearch> search_;
   std::vector<Impact> impacts_;
   ContactHistory contacts_;
   ContactTrace trace_;
@@ -211,10 +222,9 @@ void requireNoLoss(const RecordingSummary& summary)
   }
 }
 
-std::vector<core::MeasuredStep> measure(const RecordedRun& recording, const std::vector<core::FoundStep>& steps,
-                                        double sample_period, const RecordedRun::Progress& progress)
+// Reads the excitation once more.
+void readAgain(const RecordedRun& recording, core::DriveStepMeter& meter, const RecordedRun::Progress& progress)
 {
-  core::DriveStepMeter meter(steps, sample_period);
   std::uint64_t next = 0;
   recording.readExcitation(
       [&](const BaseExcitation& block)
@@ -227,7 +237,6 @@ std::vector<core::MeasuredStep> measure(const RecordedRun& recording, const std:
         }
       },
       progress);
-  return meter.finish();
 }
 
 // The first loss that touches a step.
@@ -294,14 +303,16 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
                                           " cycles, a step has at least ", options.steps.shortest_step)});
     }
   }
-  const auto steps = measure(recording, found, summary.sample_period,
-                             [&](double share)
-                             {
-                               if (progress)
-                               {
-                                 progress(first_reading + (1.0 - first_reading) * share);
-                               }
-                             });
+  const auto tell = [&](double share)
+  {
+    if (progress)
+    {
+      progress(first_reading + (1.0 - first_reading) * share);
+    }
+  };
+  const auto steps =
+      survey.search().measure(found, [&](core::DriveStepMeter& meter) { readAgain(recording, meter, tell); });
+  tell(1.0);
   if (steps.empty() && extraction.left_out.empty())
   {
     throw config::Error("topic " + recording.topics().base_excitation +

@@ -46,7 +46,8 @@ struct Extraction
   std::vector<LeftOutStep> left_out;
 };
 
-/// Reads a recording twice: for what it holds and the steps of its drive, and for the exact frequencies of these.
+/// Reads a recording, a long one twice: for what it holds and the steps of its drive, and for the exact frequencies of
+/// these.
 /// A step in which the contact changes is cut there, and each part of it evaluated by itself. Throws config::Error, in
 /// one message, where it cannot give a response: see RecordingCheck; something is missing and gaps are not allowed; no
 /// model_info, or several that differ in more than the contact; no step of constant frequency; no step left.
