@@ -8,7 +8,7 @@ namespace vibro_impact::graph
 namespace
 {
 // Worth the start of a thread, and soon full.
-constexpr std::size_t batch_samples = std::size_t{1} << 16;
+constexpr std::size_t batch_samples = std::size_t{1} << 18;
 }  // namespace
 
 StepSearch::StepSearch(double sample_period, const core::StepSearchOptions& options)
