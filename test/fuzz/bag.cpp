@@ -1,6 +1,5 @@
 // Any bytes as a bag: it is refused with a message of one line, or simulated and extracted from.
 
-#include <dlfcn.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -83,9 +82,6 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
   console_bridge::noOutputHandler();
-  // rosbag loads its plugins for every bag, which takes most of the time unless they are there.
-  static void* const plugins = dlopen("librosbag_default_encryption_plugins.so", RTLD_LAZY | RTLD_NODELETE);
-  static_cast<void>(plugins);
   const std::string path = fileOf(data, size);
   attempt(
       [&path]
