@@ -14,22 +14,23 @@ constexpr std::size_t batch_samples = std::size_t{1} << 18;
 StepSearch::StepSearch(double sample_period, const core::StepSearchOptions& options)
     : sample_period_(sample_period), finder_(sample_period, options)
 {
-  batches_.push_back(std::make_unique<Batch>());
+  thread_ = std::async(std::launch::async, [this] { work(); });
 }
 
-StepSearch::~StepSearch() = default;
+StepSearch::~StepSearch()
+{
+  end();  // for which the future then waits
+}
 
 void StepSearch::add(std::uint64_t first, const double* samples, std::size_t count)
 {
-  Batch& batch = *batches_.back();
-  if (batch.samples.empty())
+  if (filling_.samples.empty())
   {
-    batch.samples.reserve(batch_samples + count);
+    filling_.samples.reserve(batch_samples + count);
   }
-  batch.blocks.push_back({first, count});
-  batch.samples.insert(batch.samples.end(), samples, samples + count);
-  samples_ += count;
-  if (batch.samples.size() >= batch_samples)
+  filling_.blocks.push_back({first, count});
+  filling_.samples.insert(filling_.samples.end(), samples, samples + count);
+  if (filling_.samples.size() >= batch_samples)
   {
     handOver();
   }
@@ -37,23 +38,53 @@ void StepSearch::add(std::uint64_t first, const double* samples, std::size_t cou
 
 void StepSearch::handOver()
 {
-  if (work_.valid())
-  {
-    work_.get();
-  }
+  std::unique_lock<std::mutex> lock(mutex_);
+  samples_ += filling_.samples.size();
+  batches_.push_back(std::move(filling_));
+  filling_ = {};
   kept_ = kept_ && samples_ <= most_kept_samples;
+  changed_.notify_all();
   if (!kept_)
   {
-    batches_.erase(batches_.begin(), std::prev(batches_.end()));
+    changed_.wait(lock, [this] { return batches_.size() - done_ < most_waiting; });
+    batches_.erase(batches_.begin(), batches_.begin() + static_cast<std::ptrdiff_t>(done_));
+    done_ = 0;
   }
-  work_ = std::async(std::launch::async, [this, batch = batches_.back().get()] { batch->giveTo(finder_); });
-  batches_.push_back(std::make_unique<Batch>());
+}
+
+void StepSearch::work()
+{
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true)
+  {
+    changed_.wait(lock, [this] { return done_ < batches_.size() || ended_; });
+    if (done_ == batches_.size())
+    {
+      return;
+    }
+    const Batch& batch = batches_[done_];  // stays where it is until it is done
+    lock.unlock();
+    batch.giveTo(finder_);
+    lock.lock();
+    ++done_;
+    changed_.notify_all();
+  }
+}
+
+void StepSearch::end()
+{
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_all();
 }
 
 std::vector<core::FoundStep> StepSearch::finish()
 {
   handOver();
-  work_.get();
+  end();
+  thread_.get();
   return finder_.finish();
 }
 
@@ -88,9 +119,9 @@ std::vector<core::MeasuredStep> StepSearch::measure(const std::vector<core::Foun
                                   [this, &share]
                                   {
                                     core::DriveStepMeter meter(share, sample_period_);
-                                    for (const auto& batch : batches_)
+                                    for (const Batch& batch : batches_)
                                     {
-                                      batch->giveTo(meter);
+                                      batch.giveTo(meter);
                                     }
                                     return meter.finish();
                                   }));

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <future>
-#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "vibro_impact/core/drive_steps.h"
@@ -62,14 +64,28 @@ private:
     }
   };
 
+  /// No more than so many wait where the samples are not kept: 16 MiB.
+  static constexpr std::size_t most_waiting = 8;
+
   void handOver();
+  void work();
+  void end();
 
   double sample_period_;
-  core::DriveStepFinder finder_;
-  std::vector<std::unique_ptr<Batch>> batches_;  // the last one is being filled, the one before may be at work
+  core::DriveStepFinder finder_;  // of the thread, until it has ended
+  Batch filling_;
+
+  // What the thread has to do; the first `done_` of the batches handed over have been searched. Where they are not
+  // kept, these are taken away.
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Batch> batches_;
+  std::size_t done_ = 0;
+  bool ended_ = false;
   std::size_t samples_ = 0;
   bool kept_ = true;  // all batches
-  std::future<void> work_;
+
+  std::future<void> thread_;
 };
 
 }  // namespace vibro_impact::graph
