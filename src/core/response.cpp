@@ -152,4 +152,9 @@ Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>&
   return response;
 }
 
+int repetitionPeriod(const std::vector<TimedImpact>& impacts, double cycle, const ResponseOptions& options)
+{
+  return impacts.empty() ? 0 : findRecurrence(impacts, cycle, options).cycles;
+}
+
 }  // namespace vibro_impact::core

@@ -1,49 +1,95 @@
 #include "vibro_impact/ros/monitor.h"
 
-#include <cstdint>
-#include <string>
-
-#include "vibro_impact/config/error.h"
-#include "vibro_impact/ros/parameter_reader.h"
+#include <utility>
 
 namespace vibro_impact::graph
 {
 namespace
 {
-constexpr double longest_wait = 3600.0;
-constexpr std::uint32_t longest_queue = 1000000;
 /// An impact is small and must not be lost.
 constexpr std::uint32_t impact_queue = 100000;
 }  // namespace
 
 Monitor::Monitor(ros::NodeHandle node, const ros::NodeHandle& private_node)
-    : diagnostics_(node, private_node, private_node.getNamespace())
+    : parameters_(readMonitorParameters(private_node)),
+      monitor_(parameters_.options),
+      alarms_(parameters_.alarms),
+      statistics_publisher_(node.advertise<ImpactStatistics>("impact_statistics", parameters_.queue_size, true)),
+      alarm_publisher_(node.advertise<AlarmArray>("alarm", parameters_.queue_size, true)),
+      reports_(parameters_.wear_source),
+      diagnostics_(node, private_node, private_node.getNamespace())
 {
-  XmlRpc::XmlRpcValue tree;
-  private_node.getParam(private_node.getNamespace(), tree);
-  ParameterReader reader(tree, "");
-  const double period = reader.positive("diagnostic_period", 1.0, longest_wait, " (s)");
-  const std::uint32_t queue_size = reader.count("queue_size", 1000, longest_queue);
-  reader.rejectUnknown();
-  if (!reader.faults().empty())
-  {
-    throw config::Error(private_node.getNamespace(), reader.faults());
-  }
-
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+  alarm_publisher_.publish(alarms_.message());
   diagnostics_.setHardwareID("none");
-  diagnostics_.add("Response",
-                   [this](diagnostic_updater::DiagnosticStatusWrapper& status) { summary_.report(status); });
-  diagnostic_timer_ = node.createWallTimer(ros::WallDuration(period),
-                                           [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_.add("Response", [this](Status& status) { reports_.report(monitor_, contact_.changes(), status); });
+  diagnostics_.add("Alarms", [this](Status& status) { MonitorDiagnostics::report(alarms_.message(), status); });
+  if (parameters_.wear_feedback)
+  {
+    feedback_.emplace(node, *parameters_.wear_feedback);
+    diagnostics_.add("Wear feedback", [this](Status& status) { feedback_->report(status); });
+  }
+  diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
+                                           [this](const ros::WallTimerEvent&) { onTimer(); });
+  subscribe(node);
+}
+
+void Monitor::subscribe(ros::NodeHandle& node)
+{
+  const std::uint32_t queue = parameters_.queue_size;
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  gap_subscriber_ = node.subscribe<Gap>(
-      "gap", queue_size, [this](const Gap::ConstPtr& gap) { summary_.add(*gap); }, ros::VoidConstPtr(), hints);
-  force_subscriber_ = node.subscribe<ContactForce>(
-      "contact_force", queue_size, [this](const ContactForce::ConstPtr& force) { summary_.add(*force); },
-      ros::VoidConstPtr(), hints);
-  impact_subscriber_ = node.subscribe<Impact>(
-      "impact", impact_queue, [this](const Impact::ConstPtr& impact) { summary_.add(*impact); }, ros::VoidConstPtr(),
-      hints);
+  const ros::VoidConstPtr none;
+  subscribers_ = {node.subscribe<ModelInfo>(
+                      "model_info", queue,
+                      [this](const auto& info)
+                      {
+                        if (contact_.take(*info) && feedback_)
+                        {
+                          feedback_->hold(contact_);
+                        }
+                      },
+                      none, hints),
+                  node.subscribe<Impact>(
+                      "impact", impact_queue,
+                      [this](const auto& impact) { monitor_.addImpact(toReleasedImpact(*impact)); }, none, hints),
+                  node.subscribe<Gap>(
+                      "gap", queue, [this](const auto& gap) { monitor_.addGap(toBlock(*gap)); }, none, hints),
+                  node.subscribe<BaseExcitation>(
+                      "base_excitation", queue, [this](const auto& drive) { monitor_.addExcitation(toBlock(*drive)); },
+                      none, hints),
+                  node.subscribe<ContactForce>(
+                      "contact_force", queue,
+                      [this](const auto& force)
+                      {
+                        monitor_.addForce(toBlock(*force));
+                        publish(false);
+                      },
+                      none, hints)};
+}
+
+void Monitor::onTimer()
+{
+  const std::uint64_t heard = monitor_.forceSamples().taken() + monitor_.impacts().taken();
+  publish(heard == std::exchange(heard_at_timer_, heard));
+  diagnostics_.force_update();
+}
+
+void Monitor::publish(bool silent)
+{
+  while (const core::ResponseStatistics* statistics = monitor_.next(silent))
+  {
+    ImpactStatistics message;
+    toMessage(monitor_, contact_.changes(), message);
+    statistics_publisher_.publish(message);
+    if (alarms_.update(*statistics))
+    {
+      alarm_publisher_.publish(alarms_.message());
+    }
+    if (feedback_)
+    {
+      feedback_->wear(statistics->time, statistics->wear_depth);
+    }
+  }
 }
 
 }  // namespace vibro_impact::graph

@@ -87,6 +87,11 @@ struct ContactParameters
   double clearance = 0.0;  ///< distance between the surfaces at rest, m; negative: an interference fit
 };
 
+inline bool operator==(const ContactParameters& one, const ContactParameters& other)
+{
+  return one.stiffness == other.stiffness && one.clearance == other.clearance;
+}
+
 /// Damping ratios of the modes in the two states, in [0, 1). `free` is that of every mode without one of its own.
 struct DampingParameters
 {

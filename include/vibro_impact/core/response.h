@@ -75,4 +75,9 @@ struct Response
 Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>& impacts, const ReferenceScales& scales,
                           const ResponseOptions& options = {});
 
+/// Least number of drive cycles of duration `cycle` (s), up to ResponseOptions::longest_period, after which whole
+/// impacts repeat, as the last of them show; 0: none, or too few of them. `impacts` by ascending onset, none of them
+/// cut short.
+int repetitionPeriod(const std::vector<TimedImpact>& impacts, double cycle, const ResponseOptions& options = {});
+
 }  // namespace vibro_impact::core

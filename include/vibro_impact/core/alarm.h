@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+
+#include "vibro_impact/core/stream_time.h"
+
+namespace vibro_impact::core
+{
+/// When an alarm is raised and when it is cleared. Between the two limits it stays as it is (hysteresis, or deadband);
+/// on - off tells the direction. The delays are those of ANSI/ISA-18.2 and IEC 62682.
+struct AlarmLimits
+{
+  double on = 0.0;           ///< raised above it if it is greater than `off`, below it if it is less
+  double off = 0.0;          ///< cleared below it, or above it; unlike `on`
+  StreamTime on_delay = 0;   ///< how long the value must be beyond `on` without a break before it is raised, ns
+  StreamTime off_delay = 0;  ///< the same for `off`, ns
+};
+
+/// An alarm that follows a value in the stream's time.
+class Alarm
+{
+public:
+  explicit Alarm(const AlarmLimits& limits) : limits_(limits)
+  {
+  }
+
+  /// The value at `time`; whether this raised or cleared the alarm. NaN is beyond no limit. Where time goes back, a
+  /// delay begins anew.
+  bool update(StreamTime time, double value);
+
+  bool active() const
+  {
+    return active_;
+  }
+
+private:
+  bool beyond(double value) const;
+
+  AlarmLimits limits_;
+  bool active_ = false;
+  std::optional<StreamTime> beyond_since_;  ///< of the limit that would change the state
+};
+
+}  // namespace vibro_impact::core

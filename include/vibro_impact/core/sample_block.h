@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "vibro_impact/core/stream_time.h"
+
+namespace vibro_impact::core
+{
+/// Equally spaced samples that somebody else holds.
+struct SampleBlock
+{
+  std::uint64_t seq = 0;           ///< number of the first sample since the stream began
+  StreamTime stamp = 0;            ///< time of the first sample
+  double sample_period = 0.0;      ///< s
+  const double* values = nullptr;  ///< SI units of the quantity
+  std::size_t count = 0;
+};
+
+}  // namespace vibro_impact::core
