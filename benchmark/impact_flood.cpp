@@ -62,6 +62,11 @@ public:
         break;
       }
     }
+    // A second of flight more brings out what the last impacts have come to.
+    for (std::uint64_t block = blocks_; block < blocks_ + 200; ++block)
+    {
+      publishForce(block);
+    }
     const bool all = wait([&] { return last_.total_impacts >= impacts; });
     const double elapsed = (ros::SteadyTime::now() - start).toSec();
     std::printf(
@@ -89,9 +94,14 @@ private:
     return true;
   }
 
+  static ros::Time stampOf(std::uint64_t block)
+  {
+    return ros::Time(1700000000, 0) + ros::Duration().fromNSec(static_cast<std::int64_t>(block) * 5'000'000);
+  }
+
   void publish(std::uint64_t block)
   {
-    const ros::Time stamp = origin_ + ros::Duration(0).fromNSec(static_cast<std::int64_t>(block) * 5'000'000);
+    const ros::Time stamp = stampOf(block);
     for (std::uint64_t i = 0; i < impacts_per_block_; ++i)
     {
       vibro_impact::Impact impact;
@@ -103,8 +113,13 @@ private:
       impact.peak_force = 0.15;
       impact_publisher_.publish(impact);
     }
+    publishForce(block);
+  }
+
+  void publishForce(std::uint64_t block)
+  {
     vibro_impact::ContactForce force;
-    force.header.stamp = stamp;
+    force.header.stamp = stampOf(block);
     force.seq = block * block_size;
     force.sample_period = sample_period;
     force.force.assign(block_size, 0.0);
@@ -115,7 +130,6 @@ private:
   std::uint64_t impacts_per_block_;
   std::uint64_t blocks_;
   std::uint64_t number_ = 0;
-  ros::Time origin_{1700000000, 0};
   vibro_impact::ImpactStatistics last_;
   ros::Publisher impact_publisher_;
   ros::Publisher force_publisher_;
