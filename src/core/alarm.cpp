@@ -24,8 +24,8 @@ bool Alarm::update(StreamTime time, double value)
 
 bool Alarm::beyond(double value) const
 {
-  const double limit = active_ ? limits_.off : limits_.on;
-  const bool upwards = (limits_.on > limits_.off) != active_;
+  const double limit = active_ ? limits_.clear_at : limits_.raise_at;
+  const bool upwards = (limits_.raise_at > limits_.clear_at) != active_;
   return upwards ? value > limit : value < limit;
 }
 

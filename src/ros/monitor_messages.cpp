@@ -20,9 +20,9 @@ std::string describe(const Alarm& alarm, const std::string& unit, bool turned)
   const bool active = alarm.active != 0;
   const bool cleared = turned && !active;
   const char* const state = active ? "raised" : cleared ? "cleared" : "not";
-  const char* const side = (alarm.on > alarm.off) != cleared ? "above" : "below";
+  const char* const side = (alarm.raise_at > alarm.clear_at) != cleared ? "above" : "below";
   return text(alarm.quantity, " is ", alarm.value, unit.empty() ? "" : " ", unit, ": ", state, ' ', side, ' ',
-              cleared ? alarm.off : alarm.on);
+              cleared ? alarm.clear_at : alarm.raise_at);
 }
 }  // namespace
 
@@ -106,8 +106,8 @@ AlarmPanel::AlarmPanel(const std::vector<AlarmParameters>& parameters)
     alarm.name = one.name;
     alarm.quantity = one.quantity->name;
     alarm.severity = one.severity;
-    alarm.on = one.limits.on;
-    alarm.off = one.limits.off;
+    alarm.raise_at = one.limits.raise_at;
+    alarm.clear_at = one.limits.clear_at;
     alarm.text = text(alarm.quantity, ": no statistics yet");
     message_.alarms.push_back(alarm);
   }

@@ -140,12 +140,12 @@ AlarmParameters readAlarm(const std::string& name, const XmlRpc::XmlRpcValue& ma
     }
     return value;
   };
-  alarm.limits.on = limit("on");
-  alarm.limits.off = limit("off");
-  if (alarm.limits.on == alarm.limits.off && reader.faults().empty())
+  alarm.limits.raise_at = limit("raise_at");
+  alarm.limits.clear_at = limit("clear_at");
+  if (alarm.limits.raise_at == alarm.limits.clear_at && reader.faults().empty())
   {
-    reader.reject("off", config::formatNumber(alarm.limits.off),
-                  "unlike on: less for an alarm above, greater for one below");
+    reader.reject("clear_at", config::formatNumber(alarm.limits.clear_at),
+                  "unlike raise_at: less for an alarm above, greater for one below");
   }
   alarm.limits.on_delay = core::nanoseconds(reader.nonNegative("on_delay", 0.0, longest_delay, " (s)"));
   alarm.limits.off_delay = core::nanoseconds(reader.nonNegative("off_delay", 0.0, longest_delay, " (s)"));

@@ -19,7 +19,7 @@ from std_msgs.msg import Header
 from vibro_impact.msg import AlarmArray, BaseExcitation, ContactForce, Impact, ImpactStatistics, ModelInfo
 
 from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
-from simulator_rig import configuration
+from simulator_rig import PACKAGE, configuration
 
 PERIOD = 2.0e-5
 BLOCK = 250
@@ -224,9 +224,9 @@ class MonitorTest(NodeProcessTest):
 
     def test_alarms_come_and_go_and_a_late_listener_hears_of_all(self):
         self.start_alone(window=1.0, report_period=0.1, alarms={
-            "hammering": {"quantity": "impact_rate", "on": 60.0, "off": 40.0, "severity": "error"},
-            "patient": {"quantity": "impact_rate", "on": 60.0, "off": 40.0, "on_delay": 1.5},
-            "silent": {"quantity": "impact_rate", "on": 5.0, "off": 20.0}})
+            "hammering": {"quantity": "impact_rate", "raise_at": 60.0, "clear_at": 40.0, "severity": "error"},
+            "patient": {"quantity": "impact_rate", "raise_at": 60.0, "clear_at": 40.0, "on_delay": 1.5},
+            "silent": {"quantity": "impact_rate", "raise_at": 5.0, "clear_at": 20.0}})
         # Impacts per second in each second: about the limit of 60 in the third and fourth, without reaching 40.
         number = 0
         for second, rate in enumerate((50, 100, 56, 64, 100, 100, 50, 0, 0, 50)):
@@ -277,8 +277,8 @@ class MonitorTest(NodeProcessTest):
         return None
 
     def test_a_late_listener_hears_of_an_active_alarm(self):
-        self.start_alone(alarms={"silent": {"quantity": "impact_rate", "on": 5.0, "off": 20.0, "severity": "error"},
-                                 "hard": {"quantity": "peak_force", "on": 5.0, "off": 2.0}})
+        self.start_alone(alarms={"silent": {"quantity": "impact_rate", "raise_at": 5.0, "clear_at": 20.0, "severity": "error"},
+                                 "hard": {"quantity": "peak_force", "raise_at": 5.0, "clear_at": 2.0}})
         # Before any statistics all of them are there, too.
         self.expect(lambda: self.alarms and [alarm.active for alarm in self.alarms[0].alarms] == [False, False])
         self.to_force.publish(self.force(0, 1000))
@@ -355,6 +355,12 @@ class MonitorTest(NodeProcessTest):
         self.expect(lambda: int(self.value("Changes refused") or 0) > 0)
         self.assertIn("no answer from " + self.namespace + "/nobody/set_contact", self.value("Last refusal"))
         self.assertEqual(self.value("Depth handed over (m)"), "0")
+
+    def test_the_shipped_configuration_is_good(self):
+        with open(os.path.join(PACKAGE, "config", "monitor.yaml")) as stream:
+            self.start_alone(**yaml.safe_load(stream))
+        self.expect(lambda: self.alarms)
+        self.assertEqual([alarm.name for alarm in self.alarms[0].alarms], ["hammering", "hard_impacts", "silent"])
 
     def test_bad_parameters_end_it_with_all_faults(self):
         monitor = self.run_node("monitor", {"window": 0, "wear": {"coefficient": -1.0}, "alarm": {}})

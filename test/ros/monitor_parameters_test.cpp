@@ -27,12 +27,12 @@ XmlRpcValue goodTree()
   tree["wear"]["area"] = 1.0e-6;
   tree["wear"]["sliding_distance"] = 1.0e-5;
   tree["alarms"]["silent"]["quantity"] = "impact_rate";
-  tree["alarms"]["silent"]["on"] = 1;
-  tree["alarms"]["silent"]["off"] = 5;
+  tree["alarms"]["silent"]["raise_at"] = 1;
+  tree["alarms"]["silent"]["clear_at"] = 5;
   tree["alarms"]["silent"]["on_delay"] = 0.25;
   tree["alarms"]["worn"]["quantity"] = "wear_depth";
-  tree["alarms"]["worn"]["on"] = 1.0e-6;
-  tree["alarms"]["worn"]["off"] = 0;
+  tree["alarms"]["worn"]["raise_at"] = 1.0e-6;
+  tree["alarms"]["worn"]["clear_at"] = 0;
   tree["alarms"]["worn"]["severity"] = "error";
   tree["wear_feedback"]["interval"] = 3;
   return tree;
@@ -70,7 +70,7 @@ TEST(MonitorParameters, allOfThemAreRead)
   EXPECT_EQ(parameters.wear_source, "a test rig");
   ASSERT_EQ(parameters.alarms.size(), 2u);
   EXPECT_EQ(parameters.alarms[0].name, "silent");
-  EXPECT_EQ(parameters.alarms[0].limits.on, 1.0);
+  EXPECT_EQ(parameters.alarms[0].limits.raise_at, 1.0);
   EXPECT_EQ(parameters.alarms[0].limits.on_delay, 250'000'000);
   EXPECT_EQ(parameters.alarms[0].severity, vibro_impact::Alarm::WARN);
   EXPECT_STREQ(parameters.alarms[1].quantity->name, "wear_depth");
@@ -99,13 +99,13 @@ TEST(MonitorParameters, everyFaultIsNamedAtOnce)
   tree["wear"]["source"] = "";
   tree["wear"]["area"] = 0;
   tree["alarms"]["silent"]["quantity"] = "impact_rat";
-  tree["alarms"]["worn"]["off"] = 1.0e-6;
+  tree["alarms"]["worn"]["clear_at"] = 1.0e-6;
   tree["wear_feedback"]["greatest_stop"] = 1;
   const std::string message = faultsOf(tree);
-  for (const char* part :
-       {"window = -1: must be a number >= 0.001 and <= 600 (s)", "queue_size = -5", "histogram.to = 1e-09",
-        "wear.source = \"\": must be where the coefficient comes from", "wear.area = 0: must be a number > 0",
-        "did you mean impact_rate?", "alarms.worn.off = 1e-06: must be unlike on", "did you mean greatest_step?"})
+  for (const char* part : {"window = -1: must be a number >= 0.001 and <= 600 (s)", "queue_size = -5",
+                           "histogram.to = 1e-09", "wear.source = \"\": must be where the coefficient comes from",
+                           "wear.area = 0: must be a number > 0", "did you mean impact_rate?",
+                           "alarms.worn.clear_at = 1e-06: must be unlike raise_at", "did you mean greatest_step?"})
   {
     EXPECT_NE(message.find(part), std::string::npos) << '"' << message << "\" lacks \"" << part << '"';
   }
@@ -139,8 +139,8 @@ TEST(MonitorParameters, whatIsMissingOrOfAnotherTypeIsNamed)
   tree["alarms"]["worn"]["severity"] = "fatal";
   expectFault(tree, "alarms.worn.severity = \"fatal\": must be warn or error");
   tree = goodTree();
-  tree["alarms"]["worn"]["on"] = "high";
-  expectFault(tree, "alarms.worn.on = \"high\": must be a number in the unit of the quantity");
+  tree["alarms"]["worn"]["raise_at"] = "high";
+  expectFault(tree, "alarms.worn.raise_at = \"high\": must be a number in the unit of the quantity");
   tree = goodTree();
   tree["histogram"]["classes"] = 0;
   expectFault(tree, "histogram.classes = 0: must be a whole number from 1 to 1000");

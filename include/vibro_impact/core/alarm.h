@@ -7,13 +7,13 @@
 namespace vibro_impact::core
 {
 /// When an alarm is raised and when it is cleared. Between the two limits it stays as it is (hysteresis, or deadband);
-/// on - off tells the direction. The delays are those of ANSI/ISA-18.2 and IEC 62682.
+/// raise_at - clear_at tells the direction. The delays are those of ANSI/ISA-18.2 and IEC 62682.
 struct AlarmLimits
 {
-  double on = 0.0;           ///< raised above it if it is greater than `off`, below it if it is less
-  double off = 0.0;          ///< cleared below it, or above it; unlike `on`
-  StreamTime on_delay = 0;   ///< how long the value must be beyond `on` without a break before it is raised, ns
-  StreamTime off_delay = 0;  ///< the same for `off`, ns
+  double raise_at = 0.0;     ///< raised above it if it is greater than `clear_at`, below it if it is less
+  double clear_at = 0.0;     ///< cleared below it, or above it; unlike `raise_at`
+  StreamTime on_delay = 0;   ///< how long the value must be beyond `raise_at` without a break before it is raised, ns
+  StreamTime off_delay = 0;  ///< the same for `clear_at`, ns
 };
 
 /// An alarm that follows a value in the stream's time.
