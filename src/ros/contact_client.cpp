@@ -6,8 +6,8 @@
 
 namespace vibro_impact::graph
 {
-ContactClient::ContactClient(ros::NodeHandle node, std::string service)
-    : node_(std::move(node)), service_(std::move(service)), thread_([this] { work(); })
+ContactClient::ContactClient(const ros::NodeHandle& node, std::string service)
+    : node_(node), service_(std::move(service)), thread_([this] { work(); })
 {
 }
 

@@ -24,7 +24,7 @@ public:
   };
 
   /// `service`: name of the simulator's set_contact.
-  ContactClient(ros::NodeHandle node, std::string service);
+  ContactClient(const ros::NodeHandle& node, std::string service);
   ContactClient(const ContactClient&) = delete;
   ContactClient& operator=(const ContactClient&) = delete;
   ~ContactClient();
