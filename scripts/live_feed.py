@@ -27,7 +27,7 @@ class Block:
 
     @staticmethod
     def parse(buffer):
-        """From a serialised BaseExcitation, Gap or ContactForce (bytes), which are laid out alike. Raises ValueError."""
+        """From a serialised BaseExcitation, Gap or ContactForce (bytes), all laid out alike. Raises ValueError."""
         try:
             frame_length, = struct.unpack_from("<I", buffer, 12)
             seq, period, size = struct.unpack_from("<QdI", buffer, 16 + frame_length)

@@ -107,17 +107,18 @@ class Frame:
         lows, highs = self.columns(gap, start, samples, columns)
         self.middles = [0.5 * (low + high) for low, high in zip(lows, highs)]
         bottom, top = self.axis(min(lows), max(highs))
-        words = "gap %s to %s, %s" % (prefixed(min(lows), "m"), prefixed(max(highs), "m"), prefixed(samples * gap.period, "s"))
+        words = "gap %s to %s, %s" % (
+            prefixed(min(lows), "m"), prefixed(max(highs), "m"), prefixed(samples * gap.period, "s"))
         if frequency:
             words += " = %.1f drive cycles" % (samples * gap.period * frequency)
         words += ", triggered" if triggered else ", newest (no drive to trigger on)"
         return [words] + self.picture(lows, highs, bottom, top, rows)
 
     def start(self, gap, crossings, samples, columns):
-        """The number of the sample at which the trace begins, and whether the drive gave it: of the last rises of the drive
-        after which there is a whole trace, that which looks most like the one shown last. So periods of several cycles
-        stand still, too."""
-        starts = [crossing for crossing in crossings if gap.first <= crossing and crossing + samples <= gap.end - 1][-16:]
+        """The number of the sample at which the trace begins, and whether the drive gave it: of the last rises of the
+        drive after which there is a whole trace, that which looks most like the one shown last. So periods of several
+        cycles stand still, too."""
+        starts = [rise for rise in crossings if gap.first <= rise and rise + samples <= gap.end - 1][-16:]
         if not starts:
             return max(gap.first, gap.end - 1 - samples), False
         if self.middles is None or len(self.middles) != columns:
@@ -188,7 +189,8 @@ class Frame:
             self.highest = nice(greatest) if greatest > 0.0 else 1.0
         steps = len(self.characters.bars) - 1
         lines = ["last %d impulses: mean %s (%s to %s), greatest force %s" % (
-            len(values), prefixed(sum(values) / len(values), "N s"), prefixed(min(values), "N s"), prefixed(max(values), "N s"),
+            len(values), prefixed(sum(values) / len(values), "N s"),
+            prefixed(min(values), "N s"), prefixed(max(values), "N s"),
             prefixed(max(impact.peak_force for impact in impacts), "N"))]
         for row in range(rows):
             below = (rows - 1 - row) * steps

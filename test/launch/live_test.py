@@ -46,8 +46,8 @@ class Terminal:
         self.type("PS1='pro''mpt> '")
 
     def tmux(self, *words):
-        return subprocess.run(["tmux", "-S", self.socket] + list(words), stdout=subprocess.PIPE, universal_newlines=True,
-                              check=True).stdout
+        return subprocess.run(["tmux", "-S", self.socket] + list(words), stdout=subprocess.PIPE,
+                              universal_newlines=True, check=True).stdout
 
     def type(self, line):
         self.tmux("send-keys", "-l", line)
@@ -156,7 +156,8 @@ class LiveTest(NodeProcessTest):
         self.expect(terminal, "running")
 
         terminal.tmux("resize-window", "-x", "120", "-y", "40")
-        self.assertTrue(wait_until(lambda: "q quit" in (terminal.screen() + [""] * 40)[39]), "\n".join(terminal.screen()))
+        self.assertTrue(wait_until(lambda: "q quit" in (terminal.screen() + [""] * 40)[39]),
+                        "\n".join(terminal.screen()))
         terminal.tmux("resize-window", "-x", "50", "-y", "12")
         self.expect(terminal, "terminal too small: 50 x 12, needs 60 x 16")
         terminal.tmux("resize-window", "-x", "80", "-y", "24")
@@ -180,7 +181,8 @@ class LiveTest(NodeProcessTest):
                 terminal.press("C-c")
             else:
                 shell = int(terminal.tmux("list-panes", "-F", "#{pane_pid}"))
-                children = subprocess.run(["ps", "-o", "pid=", "--ppid", str(shell)], stdout=subprocess.PIPE, check=True)
+                children = subprocess.run(["ps", "-o", "pid=", "--ppid", str(shell)],
+                                          stdout=subprocess.PIPE, check=True)
                 os.kill(int(children.stdout.split()[0]), signal.SIGTERM)
             self.expect(terminal, "status %d" % {"interrupt": 130, "terminate": 143}[end])
             self.expect_restored(terminal)
@@ -203,7 +205,8 @@ class LiveTest(NodeProcessTest):
 
     def test_ends_when_the_master_is_lost(self):
         port = free_port()
-        master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)],
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.processes.append(master)
         terminal = self.terminal(120, 24, ROS_MASTER_URI="http://localhost:%d" % port)
         # Not before the master answers.
@@ -240,11 +243,13 @@ class LiveTest(NodeProcessTest):
     def test_says_what_is_wrong(self):
         result = self.run_live()
         self.assertEqual(result.returncode, 1)
-        self.assertEqual(result.stderr, "live: error: standard input and output are not a terminal: --once prints a frame without one\n")
+        self.assertEqual(result.stderr, "live: error: standard input and output are not a terminal: "
+                                        "--once prints a frame without one\n")
         result = self.run_live("--once", ROS_MASTER_URI="http://localhost:%d" % free_port())
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"^live: error: no master at http://localhost:\d+/?: .*\n$")
-        for option, value in (("--span", "2"), ("--rate", "fast"), ("--width", "59"), ("--listen", "-1"), ("--height", "1e3")):
+        for option, value in (("--span", "2"), ("--rate", "fast"), ("--width", "59"), ("--listen", "-1"),
+                              ("--height", "1e3")):
             result = self.run_live("--once", option, value)
             self.assertEqual(result.returncode, 2)
             self.assertRegex(result.stderr, r"live: error: argument %s.*: %s: must be a number from " % (option, value))

@@ -143,8 +143,8 @@ class ViewTest(NodeProcessTest):
 
     def screen(self, environment):
         """The picture of the screen: width, height and its pixels as bytes, red, green and blue of each."""
-        result = subprocess.run(["import", "-window", "root", "-depth", "8", "ppm:-"], env=environment, stdout=subprocess.PIPE,
-                                stderr=subprocess.DEVNULL)
+        result = subprocess.run(["import", "-window", "root", "-depth", "8", "ppm:-"], env=environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         fields = result.stdout.split(None, 4) if result.returncode == 0 else []
         if len(fields) < 5 or fields[0] != b"P6":
             return 0, 0, b""
@@ -152,7 +152,7 @@ class ViewTest(NodeProcessTest):
         return width, height, result.stdout[-3 * width * height:]
 
     def test_rviz_shows_beams_arrow_and_words(self):
-        """All in one picture: blue over orange in the middle, a green arrow above the contact, black words above that."""
+        """All in one picture: blue over orange in the middle, a green arrow above the contact, words above that."""
         missing = [program for program in ("Xvfb", "import") if not shutil.which(program)]
         try:
             rospkg.RosPack().get_path("rviz")

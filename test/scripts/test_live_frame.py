@@ -181,7 +181,8 @@ class FrameTest(unittest.TestCase):
     def test_numbers_have_three_digits_and_a_prefix(self):
         self.assertEqual([prefixed(value, "m") for value in (0.0, 1.5, 0.0123456, -3.21e-6, 9.9996e-4, 5e-13)],
                          ["0 m", "1.5 m", "12.3 mm", "-3.21 um", "1 mm", "5e-13 m"])
-        self.assertEqual([round(nice(value), 9) for value in (0.9, 1.0, 1.1, 2.1, 5.1, 0.03)], [1.0, 1.0, 2.0, 5.0, 10.0, 0.05])
+        self.assertEqual([round(nice(value), 9) for value in (0.9, 1.0, 1.1, 2.1, 5.1, 0.03)],
+                         [1.0, 1.0, 2.0, 5.0, 10.0, 0.05])
 
 
 if __name__ == "__main__":
