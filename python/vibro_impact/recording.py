@@ -99,7 +99,8 @@ def extract_responses(
     shortest_step            drive cycles that make a step
     lowest_frequency         of a drive to look for, Hz
 
-    Returns an object with responses and impacts (structured arrays with the columns of frf.csv and impacts.csv),
+    Returns an object with responses and impacts (structured arrays with the columns of frf.csv and impacts.csv), steps
+    (list of the (start, end) of each response's step in s from sample 0 of the stream),
     left_out (list of (omega_star, first sample, sample after the last one, reason)), contacts (list of (first sample,
     stiffness in N/m, clearance in m, number of responses)), losses and summary (as of a Recording). Raises
     vibro_impact.Error where it cannot give a response.

@@ -88,6 +88,7 @@ Response evaluateResponse(const DriveStep& step, const std::vector<TimedImpact>&
                           const ResponseOptions& options)
 {
   Response response;
+  response.step = step;
   ResponseRow& row = response.row;
   row.omega_star = step.frequency / scales.frequency;
   row.frequency_hz = step.frequency / two_pi;

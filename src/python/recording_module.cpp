@@ -121,6 +121,16 @@ py::list leftOut(const graph::Extraction& extraction)
   return list;
 }
 
+py::list stepsOf(const graph::Extraction& extraction)
+{
+  py::list list;
+  for (const core::Response& response : extraction.responses)
+  {
+    list.append(py::make_tuple(response.step.start, response.step.end));
+  }
+  return list;
+}
+
 py::list contactsOf(const graph::Extraction& extraction)
 {
   py::list list;
@@ -219,6 +229,9 @@ void defineRecording(py::module& module)
       .def_property_readonly(
           "impacts", [](const graph::Extraction& self) { return impactArray(self.responses); },
           "structured array of the captured impacts, the columns of impacts.csv; onset_s from sample 0 of the stream")
+      .def_property_readonly("steps", &stepsOf,
+                             "where they begin and end: list of (start, end) in s from sample 0 of the stream, one an "
+                             "element of responses")
       .def_property_readonly("left_out", &leftOut,
                              "steps not evaluated: list of (omega_star, first sample, sample after the last, reason)")
       .def_property_readonly("contacts", &contactsOf,

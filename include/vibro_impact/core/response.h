@@ -67,6 +67,7 @@ struct Response
 {
   ResponseRow row;
   std::vector<TimedImpact> captured;  ///< in order of onset, at most ResponseOptions::captured_impacts
+  DriveStep step;                     ///< that was evaluated
 };
 
 /// Evaluates the end of a step: steady state, period, impulses. `impacts` are those of the step by ascending onset;
