@@ -7,6 +7,7 @@ install(DIRECTORY config launch rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINAT
 # The scripts for use; those that build and test the repository stay in it.
 catkin_install_python(
   PROGRAMS scripts/landmarks scripts/limiting_case scripts/live scripts/plot_frf scripts/plot_simulation scripts/replay_contact
+    scripts/report
   DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(PROGRAMS scripts/isolated DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(FILES scripts/frequency_response.py scripts/live_feed.py scripts/live_frame.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -1,0 +1,379 @@
+"""Which sections a run gives, and what they say."""
+
+import datetime
+import html
+import os
+
+import numpy as np
+
+from vibro_impact.report import impact_charts, response_charts, spectra, spectral_charts, step_data
+from vibro_impact.report import model as models
+from vibro_impact.report import run as runs
+from vibro_impact.report.packing import prefix
+from vibro_impact.report.page import Page, figure, plotly_version, table
+
+# A page of this many characters opens at once; what the rest leaves of it is for the data of the steps.
+LARGEST_PAGE = 13.0e6
+LOSSES_SHOWN = 20
+STATE_WORDS = {"free": "the contact never reached", "contact": "the contact never left"}
+
+
+class Refused(Exception):
+    """Something the user asked for is not in the recording; the message is one line."""
+
+
+def utc(stamp):
+    """A time stamp (seconds, nanoseconds) for people."""
+    if stamp[0] < 86400 * 365:
+        return "%d.%09d s" % tuple(stamp)
+    moment = datetime.datetime.fromtimestamp(stamp[0], datetime.timezone.utc)
+    return moment.strftime("%Y-%m-%d %H:%M:%S") + ".%06d UTC" % (stamp[1] // 1000)
+
+
+def drive_words(run):
+    if run.stepped:
+        frequencies = [segment.frequency for segment in run.segments]
+        return "%d steps of constant frequency, %.4g to %.4g Hz" % (len(frequencies), min(frequencies), max(frequencies))
+    if runs.is_random(run):
+        return "random: about %d lines share the power of a segment of 4096 samples" % round(run.drive_lines)
+    if run.drive_lines is None:
+        return "none"
+    return "neither steps of constant frequency nor random"
+
+
+def counts(run):
+    recording = run.recording
+    impacts = recording.impacts
+    return [
+        ("bags", " ".join(os.path.basename(bag) for bag in run.bags)),
+        ("first sample", "%s (number %d)" % (utc(recording.start_stamp), recording.first)),
+        ("length", "%.6g s: %d samples at %.6g Hz" % (len(recording.gap) * recording.sample_period, len(recording.gap), 1.0 / recording.sample_period)),
+        ("drive", drive_words(run)),
+        ("impacts", "%d, of which %d cut short" % (len(impacts), int(np.count_nonzero(impacts["cut_short"])))),
+    ]
+
+
+def replay_verdict(run):
+    """(class of the verdict, text)."""
+    report = run.replay
+    if report is None:
+        return "open", "Not compared. " + run.replay_error
+    if report.difference:
+        found = report.difference
+        return "bad", "Different: topic %s, %s: %s: recorded %s, recomputed %s. Before it %d samples and %d impacts are identical." % (
+            found.topic,
+            found.place,
+            found.field,
+            found.recorded,
+            found.recomputed,
+            report.samples,
+            report.impacts,
+        )
+    words = "%d samples of gap and contact force and %d impacts, recomputed from the excitation and the model recorded with them, bit for bit." % (
+        report.samples,
+        report.impacts,
+    )
+    if report.losses or report.impacts_not_compared:
+        return "open", "Identical where compared: " + words
+    return "", "Identical: " + words
+
+
+def integrity(page, run):
+    recording = run.recording
+    kind, words = replay_verdict(run)
+    page.put("<p class='verdict %s'>%s</p>" % (kind, html.escape(words)))
+    summary = recording.summary
+    page.put(
+        table(
+            [
+                ("blocks of excitation", "%d, and %d recorded twice" % (summary.blocks, summary.repeated)),
+                ("samples", "%d" % summary.samples),
+                ("impacts", "%d" % summary.impacts),
+                ("restarts of the motion", "%d" % summary.restarts),
+                ("losses", "%d" % len(recording.losses) if recording.losses else "none"),
+                ("steps left out", "%d" % len(run.left_out) if run.left_out else "none"),
+            ]
+        )
+    )
+    if recording.losses:
+        rows = [(int(first), int(last), reason) for first, last, reason in recording.losses]
+        page.put("<h3>Losses</h3>" + table(rows[:LOSSES_SHOWN], ("from sample", "to before", "what")))
+        if len(rows) > LOSSES_SHOWN:
+            page.put("<p>And %d more.</p>" % (len(rows) - LOSSES_SHOWN))
+    if run.left_out:
+        rows = [("%.4f" % omega_star, int(first), int(last), reason) for omega_star, first, last, reason in run.left_out]
+        page.put("<h3>Steps left out</h3>" + table(rows[:LOSSES_SHOWN], ("\u03c9*", "from sample", "to before", "why")))
+    starts = [(int(sample), cause, reason) for sample, cause, reason in recording.starts]
+    if starts:
+        page.put("<h3>Starts from rest</h3>" + table(starts[:LOSSES_SHOWN], ("at sample", "cause", "reason")))
+
+
+def configuration(page, run):
+    for model in run.recording.models:
+        page.put("<h3>From sample %d on</h3>" % model.seq)
+
+        def listed(values):
+            return ", ".join("%.6g" % value for value in values) + " Hz"
+
+        page.put(
+            table(
+                [
+                    ("version", model.version),
+                    ("free natural frequencies", listed(model.free_frequencies)),
+                    ("natural frequencies in contact", listed(model.contact_frequencies)),
+                    ("loss of the mapping", ", ".join("%.3g" % loss for loss in model.mapping_loss)),
+                ]
+            )
+        )
+        page.put("<pre tabindex='0'>%s</pre>" % html.escape(model.configuration))
+
+
+def label(number, segment, period, total):
+    """How the list of steps calls one."""
+    if segment.frequency:
+        direction = {1: ", up", -1: ", down", 0: ""}[segment.direction]
+        cycles = "period %d" % segment.period if segment.period else "no period"
+        return "%d of %d: \u03c9* %.4f, %.2f Hz, %.4g m/s\u00b2%s, %s" % (
+            number + 1,
+            total,
+            segment.omega_star,
+            segment.frequency,
+            segment.acceleration,
+            direction,
+            cycles,
+        )
+    return "%d of %d: %.4g to %.4g s" % (number + 1, total, segment.first * period, segment.last * period)
+
+
+def chosen_step(run, wanted):
+    """Number of the segment that is shown first."""
+    if wanted is None:
+        if not run.stepped:
+            return 0
+        return int(np.argmax([np.max(impacts["impulse"], initial=0.0) for impacts in run.captured]))
+    try:
+        if "." not in wanted:
+            number = int(wanted)
+            if 1 <= number <= len(run.segments):
+                return number - 1
+            raise Refused("--step: there is no step %d, allowed is 1 to %d" % (number, len(run.segments)))
+        omega_star = float(wanted)
+    except ValueError:
+        raise Refused("--step: '%s' is neither the number of a step nor omega*" % wanted)
+    if not run.stepped:
+        raise Refused("--step: %s is an omega*, but the drive has no steps; allowed is a number from 1 to %d" % (wanted, len(run.segments)))
+    differences = [abs(segment.omega_star - omega_star) for segment in run.segments]
+    nearest = int(np.argmin(differences))
+    if not differences[nearest] <= 0.05 * max(abs(omega_star), 0.1):
+        raise Refused(
+            "--step: no step has omega* %s, allowed is %.4g to %.4g"
+            % (wanted, min(s.omega_star for s in run.segments), max(s.omega_star for s in run.segments))
+        )
+    return nearest
+
+
+def responses(page, read):
+    run = read[0]
+    if not run.stepped:
+        page.left_out("impulse", "Impulse response, period map, stroboscopic diagram", run.without_steps + ".")
+        return
+    stepped = [each for each in read if each.stepped]
+    if len(stepped) < len(read):
+        page.put("<p class='left-out'>The second run is left out of the responses: %s.</p>" % html.escape(read[1].without_steps))
+    if any(len(impacts) for each in stepped for impacts in each.captured):
+        page.section("impulse", "Impulse response")
+        page.chart(response_charts.impulse_response(stepped))
+    else:
+        page.left_out("impulse", "Impulse response", "no step has an impact in its steady response.")
+    page.section("period", "Period map")
+    page.chart(response_charts.period_map(stepped))
+    page.section("strobe", "Stroboscopic diagram")
+    page.chart(response_charts.stroboscopic(stepped))
+
+
+def histograms(page, run):
+    impacts = run.recording.impacts
+    whole = impacts[~impacts["cut_short"].astype(bool)]
+    if len(whole) == 0:
+        reason = "the contact was never left" if pressed(run) else "there are no whole impacts in the recording"
+        page.left_out("histograms", "Histograms", reason + ".")
+        return
+    page.section("histograms", "Histograms")
+    page.put("<p>Of every whole impact of the recording, transients included.</p>")
+    charts = impact_charts.histograms(whole)
+    page.pairs(charts)
+
+
+def pressed(run):
+    """Whether the surfaces touch at every sample that is known."""
+    force = run.recording.contact_force
+    known = force[np.isfinite(force)]
+    return len(known) > 0 and bool(np.all(known > 0.0))
+
+
+def touched(run):
+    return bool(np.nanmax(run.recording.contact_force, initial=0.0) > 0.0) or len(run.recording.impacts) > 0
+
+
+STEP_CHARTS = (
+    (
+        "step_time",
+        "Gap and contact force",
+        "Lines: every sample of the end of the %(step)s. Shaded: least and greatest value in each of many parts of the whole of it. "
+        "Drag over a stretch to zoom, double-click for all; a negative gap is a compressed spring. The CSV holds every sample of the end.",
+        560,
+    ),
+    (
+        "step_portrait",
+        "Phase portrait",
+        "Gap velocity over gap, over the stretch that the chart above shows at first. The velocity is not recorded: it is the central "
+        "difference of the recorded gap over two sample periods, which takes sin(x)/x of a frequency f, x = 2\u03c0 f times the period. "
+        "Dashed: contact.",
+        480,
+    ),
+    (
+        "step_spectrum",
+        "Spectrum",
+        "Amplitude spectra of the second half of the %(step)s, at most 131 072 samples (whole drive cycles of it where there is a drive), with a "
+        "Hann window: a sine of amplitude A has A at its line. Where lines are more than the chart can hold, each value is the greatest "
+        "of its neighbours. Dotted: frequency of the drive.",
+        480,
+    ),
+)
+
+
+def steps(page, run, options):
+    page.section("step", "A chosen step" if run.stepped else "A chosen part")
+    chosen = chosen_step(run, options.step)
+    page.put(
+        "<div class='chooser'><label for='step-choice'>%s</label><select id='step-choice'></select>"
+        "<button type='button' id='step-back'>Previous</button><button type='button' id='step-on'>Next</button></div>"
+        % ("Step of the drive" if run.stepped else "Part of the recording")
+    )
+    if not run.stepped:
+        page.put("<p>The drive has no steps; these are %d equal parts of the recording.</p>" % len(run.segments))
+
+    for key, title, caption, height in STEP_CHARTS:
+        page.put(figure(key, title, caption % {"step": "step" if run.stepped else "part"}, height))
+    held = step_data.embedded(run.segments, chosen)
+    if len(held) < len(run.segments):
+        page.put("<p class='left-out'>The page holds %d of the %d steps, evenly chosen.</p>" % (len(held), len(run.segments)))
+    return chosen, held
+
+
+def waterfalls(page, run):
+    page.section("waterfall", "Waterfall")
+    made = [
+        spectral_charts.waterfall(run.recording.gap, run.recording.sample_period, run.segments if run.stepped else [], "gap", "gap", "m"),
+    ]
+    if touched(run):
+        made.append(
+            spectral_charts.waterfall(
+                run.recording.contact_force, run.recording.sample_period, run.segments if run.stepped else [], "force", "contact force", "N"
+            )
+        )
+    shown = [chart for chart in made if chart]
+    for chart in shown:
+        page.chart(chart)
+    if not shown:
+        page.put("<p class='left-out'>Left out: the gap never moves.</p>")
+    elif not touched(run):
+        page.put("<p class='left-out'>That of the contact force is left out: the contact is never reached.</p>")
+
+
+def frequency_responses(page, run, resolution):
+    title = "Frequency-response functions"
+    if not runs.is_random(run):
+        page.left_out("frf", title, "the drive is not random (%s)." % drive_words(run))
+        return
+    recording = run.recording
+    if resolution:
+        length = 2 * max(32, int(round(0.5 / (resolution * recording.sample_period))))
+    else:
+        length = spectra.segment_length(len(recording.gap), recording.sample_period, models.bandwidth(recording))
+    gap = None
+    if length <= len(recording.gap):
+        gap = spectra.frequency_response(recording.acceleration, recording.gap, recording.sample_period, length)
+    if gap is None:
+        page.left_out("frf", title, "no stretch of %d samples, which one segment takes, is without a loss." % length)
+        return
+    page.section("frf", title)
+    page.put(
+        "<p>Ratios of the phasors of a response and of the base acceleration that excites it (ISO 7626-1). The excitation is an acceleration, "
+        "not a force: the gap per base acceleration, in s\u00b2, stands for the receptance (dynamic compliance), as the base acts on every mode "
+        "like the force \u2212\u0393<sub>n</sub> <i>a</i>.</p>"
+    )
+    page.chart(spectral_charts.excitation_density(gap))
+    state = models.linear_state(recording, touched(run), pressed(run))
+    closed_form = models.receptance(recording, state, gap.frequency) if state else None
+    page.chart(spectral_charts.frequency_response(gap, "gap", "gap", "m", closed_form, STATE_WORDS.get(state, "")))
+    if touched(run):
+        force = spectra.frequency_response(recording.acceleration, recording.contact_force, recording.sample_period, length)
+        page.chart(spectral_charts.frequency_response(force, "force", "contact force", "N"))
+        if not state:
+            page.put("<p>No closed form is drawn along: a contact that opens and closes is not linear, which the coherence shows.</p>")
+    else:
+        page.put("<p class='left-out'>That of the contact force is left out: the contact is never reached.</p>")
+
+
+def make(read, options, stage):
+    """The page as text."""
+    run = read[0]
+    recording = run.recording
+    names = " ".join(os.path.basename(bag) for bag in run.bags)
+    page = Page("Vibro-impact run: " + names)
+    page.lead("Made from the recording alone. Charts can be zoomed with the mouse or, in focus, with the keys plus, minus, arrows and 0.")
+    page.section("run", "Run")
+    page.put(table(counts(run)))
+    for other in read[1:]:
+        page.put("<h3>Second run, drawn along in the responses</h3>" + table(counts(other)))
+    stage("charts over time")
+    page.chart(impact_charts.over_time(recording))
+    page.section("integrity", "Integrity")
+    for other in read:
+        if other is not run:
+            page.put("<h3>Second run</h3>")
+        integrity(page, other)
+    page.section("configuration", "Configuration")
+    configuration(page, run)
+    stage("responses")
+    responses(page, read)
+    histograms(page, run)
+    chosen, held = steps(page, run, options)
+    stage("waterfalls")
+    waterfalls(page, run)
+    stage("frequency-response functions")
+    frequency_responses(page, run, options.resolution)
+
+    stage("data of %d %s" % (len(held), "steps" if run.stepped else "parts"))
+    factor_gap, unit_gap = prefix(greatest(recording.gap))
+    factor_force, unit_force = prefix(greatest(recording.contact_force))
+    page.data.update(
+        sample_period=recording.sample_period,
+        units={"gap": {"factor": factor_gap, "text": unit_gap + "m"}, "force": {"factor": factor_force, "text": unit_force + "N"}},
+        part="step" if run.stepped else "part",
+        chosen=chosen,
+        segments=[
+            {
+                "label": label(i, segment, recording.sample_period, len(run.segments)),
+                "first": segment.first,
+                "last": segment.last,
+                "frequency": segment.frequency,
+                "period": segment.period,
+            }
+            for i, segment in enumerate(run.segments)
+        ],
+    )
+    footer = (
+        "Charts by plotly.js %s (MIT licence, &#169; Plotly, Inc.), which is inside this page. The page makes no request. "
+        "Definitions: doc/report.md of the package vibro_impact." % plotly_version()
+    )
+    rest = LARGEST_PAGE - len(page.render(footer))
+    size = step_data.sizes(len(held), rest)
+    top = 0.5 / recording.sample_period
+    page.data["step_data"] = {str(i): step_data.of_segment(recording, run.segments[i], size, top) for i in held}
+    return page.render(footer)
+
+
+def greatest(values):
+    return float(np.nanmax(np.abs(values))) if np.isfinite(values).any() else 0.0

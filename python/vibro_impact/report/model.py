@@ -1,0 +1,42 @@
+"""What the model of a recording says of its linear motions."""
+
+import numpy as np
+import yaml
+
+import vibro_impact
+
+# Damping ratio, at least, by which the resolution of spectra is chosen.
+LEAST_DAMPING = 0.002
+# Images of the spectrum of a sampled drive that are summed on either side; those beyond weigh less than 1e-6.
+IMAGES = 4
+
+
+def bandwidth(recording):
+    """Half-power bandwidth 2 zeta f of the lowest resonance while apart, Hz."""
+    frequencies = np.asarray(recording.models[0].free_frequencies)
+    damping = float(yaml.safe_load(recording.models[0].configuration)["damping"]["free"])
+    return 2.0 * max(damping, LEAST_DAMPING) * float(np.min(frequencies[frequencies > 0.0]))
+
+
+def linear_state(recording, touched, pressed):
+    """The linear state, "free" or "contact", in which the whole recording is; "" where it is in both or its contact changes."""
+    if len(recording.models) != 1 or (touched and not pressed):
+        return ""
+    return "contact" if pressed else "free"
+
+
+def receptance(recording, state, frequency):
+    """Gap per base acceleration in a linear state (complex, s^2) at `frequency` in Hz, for a drive that is linear between its
+    samples, as the simulator takes it.
+
+    The closed form is H = -sum_n b_n Gamma_n/(omega_n^2 - omega^2 + 2 i zeta_n omega_n omega), from the modal equations of
+    doc/model.md, section 3. Joined by straight lines, samples at a frequency f are a drive that has sinc^2(f T) of their amplitude
+    there, and an image at every f + k/T, of which the samples of the response show the answer at f again."""
+    model = vibro_impact.Model(recording.models[0].configuration)
+    period = recording.sample_period
+    total = np.zeros(len(frequency), dtype=complex)
+    for k in range(-IMAGES, IMAGES + 1):
+        image = frequency + k / period
+        answer = np.asarray(model.gap_response(np.abs(image), state))
+        total += np.where(image < 0.0, np.conj(answer), answer) * np.sinc(image * period) ** 2
+    return total

@@ -1,0 +1,91 @@
+"""Bags of runs that the core computes, as shaker, simulator and rosbag leave them."""
+
+import numpy
+import rosbag
+import rospy
+
+import vibro_impact
+from vibro_impact.msg import BaseExcitation, ContactForce, Gap, Impact, ModelInfo, StreamStart
+
+PERIOD = 2.0e-5
+BLOCK = 500
+START = rospy.Time(1600000000, 250000000)
+
+BEAM = "{youngs_modulus: %r, density: 954.0, length: 0.0529, height: 0.00127, width: 0.0127, contact_location: 0.02645}"
+FREQUENCY = 271.45727650517387  # of beam 1, Hz
+
+
+def configuration(clearance=0.0, damping=0.01):
+    """Two beams at midspan, the second a thousand times stiffer; the default basis."""
+    return "beam1: %s\nbeam2: %s\ncontact: {stiffness: 24309.426302924, clearance: %r}\ndamping: {free: %r, contact: 0.05}\n" % (
+        BEAM % 1.66e9,
+        BEAM % 1.66e12,
+        clearance,
+        damping,
+    )
+
+
+def stepped_sine(omega_stars, cycles, acceleration=10.0):
+    """Samples of steps of a sine, their phase continuous."""
+    parts = []
+    phase = 0.0
+    for omega_star in omega_stars:
+        frequency = omega_star * FREQUENCY
+        count = int(round(cycles / (frequency * PERIOD)))
+        parts.append(acceleration * numpy.sin(phase + 2.0 * numpy.pi * frequency * PERIOD * numpy.arange(count)))
+        phase += 2.0 * numpy.pi * frequency * PERIOD * count
+    return numpy.concatenate(parts)
+
+
+def random_drive(duration, deviation=10.0, seed=1):
+    """White noise of Gaussian samples, m/s^2."""
+    return deviation * numpy.random.RandomState(seed).standard_normal(int(round(duration / PERIOD)))
+
+
+def stamp_of(seconds):
+    return START + rospy.Duration.from_sec(seconds)
+
+
+def write_bag(path, configuration_text, acceleration, lost_blocks=()):
+    """What the simulator answers to `acceleration`, and its impacts, in a bag. `lost_blocks`: numbers of blocks of the gap that
+    are not in it."""
+    model = vibro_impact.Model(configuration_text)
+    simulation = model.simulation(PERIOD)
+
+    def header(stamp):
+        message = Gap().header
+        message.stamp = stamp
+        message.frame_id = "base_frame"
+        return message
+
+    with rosbag.Bag(path, "w") as bag:
+        info = ModelInfo(
+            version="0.1.0",
+            configuration=model.configuration,
+            free_frequencies=model.free_frequencies,
+            contact_frequencies=model.contact_frequencies,
+            mapping_loss=model.mapping_loss,
+        )
+        bag.write("/model_info", info, START)
+        bag.write("/stream_start", StreamStart(header=header(START), seq=0, sample_period=PERIOD, cause=StreamStart.FIRST), START)
+
+        def record(impacts, time):
+            for impact in impacts:
+                sample = int(numpy.floor(impact["onset"] / PERIOD))
+                message = Impact(header=header(stamp_of(impact["onset"])), seq=sample, offset=impact["onset"] - sample * PERIOD)
+                for field in impact.dtype.names:
+                    if field != "onset":
+                        setattr(message, field, impact[field].item())
+                bag.write("/impact", message, time)
+
+        for number, first in enumerate(range(0, len(acceleration), BLOCK)):
+            samples = acceleration[first : first + BLOCK]
+            gap, force, impacts = simulation.advance(samples)
+            time = stamp_of(first * PERIOD)
+            head = dict(header=header(time), seq=first, sample_period=PERIOD)
+            bag.write("/base_excitation", BaseExcitation(acceleration=samples, **head), time)
+            if number not in lost_blocks:
+                bag.write("/gap", Gap(gap=gap, **head), time)
+            bag.write("/contact_force", ContactForce(force=force, **head), time)
+            record(impacts, time)
+        record(simulation.finish(), stamp_of(len(acceleration) * PERIOD))

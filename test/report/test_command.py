@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+"""scripts/report, run as a user runs it."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path.insert(0, HERE)
+import recorded  # noqa: E402
+
+SCRIPT = os.path.join(HERE, "..", "..", "scripts", "report")
+
+
+class Command(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.stepped = os.path.join(cls.folder.name, "stepped.bag")
+        drive = recorded.stepped_sine([1.2, 1.6, 2.0], 40)
+        recorded.write_bag(cls.stepped, recorded.configuration(), drive)
+        cls.linear = os.path.join(cls.folder.name, "linear.bag")
+        recorded.write_bag(cls.linear, recorded.configuration(clearance=1e-2), recorded.random_drive(4.0))
+        cls.lossy = os.path.join(cls.folder.name, "lossy.bag")
+        recorded.write_bag(cls.lossy, recorded.configuration(), drive, lost_blocks=(2,))
+        cls.quiet = os.path.join(cls.folder.name, "quiet.bag")
+        recorded.write_bag(cls.quiet, recorded.configuration(clearance=1e-3), np.zeros(5000))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def setUp(self):
+        out = tempfile.TemporaryDirectory()
+        self.addCleanup(out.cleanup)
+        self.folder_out = out.name
+        self.out = os.path.join(out.name, "page.html")
+
+    def report(self, *arguments):
+        return subprocess.run([SCRIPT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+
+    def page(self, *arguments):
+        """(text of the page, its data)."""
+        result = self.report(*arguments, "--out", self.out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(os.listdir(self.folder_out), ["page.html"])
+        with open(self.out, encoding="utf-8") as file:
+            text = file.read()
+        return text, json.loads(re.search(r'<script type="application/json" id="report-data">(.*?)</script>', text).group(1))
+
+    def assert_says(self, text, words):
+        # Without the page itself in the message.
+        self.assertTrue(words in text, words)
+
+    def assert_refused(self, result, status, *words):
+        self.assertEqual(result.returncode, status, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        last = result.stderr.splitlines()[-1]
+        self.assertTrue(last.startswith("report: error: "), last)
+        for word in words:
+            self.assertIn(word, last)
+        self.assertEqual(os.listdir(self.folder_out), [])
+
+    def test_says_how_it_is_used(self):
+        result = self.report("--help")
+        self.assertEqual(result.returncode, 0)
+        for option in ("--out", "--with", "--namespace", "--excitation", "--step", "--resolution", "--no-replay"):
+            self.assertIn(option, result.stdout)
+
+    def test_a_stepped_sine_gives_responses_and_no_frequency_response_function(self):
+        text, data = self.page(self.stepped)
+        for key in ("overview", "impulse_response", "period_map", "stroboscopic", "histogram_impulse", "waterfall_gap", "waterfall_force"):
+            self.assertIn(key, data["charts"])
+        self.assertNotIn("frf_gap", data["charts"])
+        self.assert_says(text, "Left out: the drive is not random (3 steps of constant frequency, 325.7 to 542.9 Hz).")
+        self.assertEqual([len(data["segments"]), len(data["step_data"])], [3, 3])
+        # The step with the greatest impulse comes first: that at the resonance.
+        self.assertIn("\u03c9* 1.6000", data["segments"][data["chosen"]]["label"])
+        self.assertIn(", up, ", data["segments"][0]["label"])
+        self.assert_says(text, "youngs_modulus")
+
+    def test_the_step_shown_first_can_be_chosen(self):
+        self.assertEqual(self.page(self.stepped, "--step", "3")[1]["chosen"], 2)
+        self.assertEqual(self.page(self.stepped, "--step", "1.21", "--no-replay")[1]["chosen"], 0)
+
+    def test_a_random_drive_gives_frequency_response_functions_and_the_replay_is_identical(self):
+        text, data = self.page(self.linear)
+        self.assertIn("frf_gap", data["charts"])
+        self.assertNotIn("impulse_response", data["charts"])
+        self.assert_says(text, "no steps of constant frequency found")
+        self.assert_says(text, "Identical: 200000 samples of gap and contact force and 0 impacts")
+        self.assert_says(text, "Left out: there are no whole impacts in the recording.")
+        self.assert_says(text, "the contact is never reached")
+        found = re.search(r"at (\d+) lines, H<sub>1</sub> is within", text)
+        self.assertGreater(int(found.group(1)), 100)
+
+    def test_the_resolution_can_be_given(self):
+        text, _ = self.page(self.linear, "--resolution", "50")
+        self.assert_says(text, "segments of 1000 samples overlapping by 50 %")
+        self.assert_says(text, "resolution 50 Hz")
+
+    def test_losses_are_listed_and_their_steps_left_out(self):
+        text, data = self.page(self.lossy)
+        self.assertEqual(len(data["segments"]), 2)
+        self.assert_says(text, "<h3>Losses</h3>")
+        self.assert_says(text, "<h3>Steps left out</h3>")
+
+    def test_a_run_without_any_motion_gives_a_page(self):
+        text, data = self.page(self.quiet)
+        self.assert_says(text, "Left out: the gap never moves.")
+        self.assertEqual(sorted(data["charts"]), ["overview"])
+
+    def test_another_run_is_drawn_along(self):
+        _, data = self.page(self.stepped, "--with", self.stepped, "--no-replay")
+        self.assertEqual(
+            [trace["name"] for trace in data["charts"]["impulse_response"]["traces"]],
+            ["drive upwards, first run", "drive upwards, second run"],
+        )
+
+    def test_makes_the_same_page_again(self):
+        first, _ = self.page(self.stepped)
+        self.assertEqual(first, self.page(self.stepped)[0])
+
+    def test_refuses_what_is_not_there(self):
+        self.assert_refused(self.report("/nowhere/x.bag", "--out", self.out), 1, "/nowhere/x.bag")
+        self.assert_refused(self.report(__file__, "--out", self.out), 1, os.path.basename(__file__))
+        self.assert_refused(self.report(self.stepped, "--out", "/nowhere/page.html"), 1, "--out", "/nowhere/page.html")
+        self.assert_refused(self.report(self.stepped, "--out", "/proc/page.html"), 1, "--out", "/proc/page.html")
+        self.assert_refused(self.report(self.stepped, "--out", self.folder_out), 1, "--out", "is a folder")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--step", "4", "--no-replay"), 1, "--step", "4", "1 to 3")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--step", "3.9", "--no-replay"), 1, "--step", "3.9", "1.2 to 2")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--step", "nan.", "--no-replay"), 1, "--step")
+        self.assert_refused(self.report(self.linear, "--out", self.out, "--step", "1.5", "--no-replay"), 1, "--step", "no steps")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--resolution", "-1"), 1, "--resolution", "-1")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--resolution", "nan"), 1, "--resolution", "nan")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--namespace", "/nobody"), 1, "/nobody")
+
+    def test_refuses_a_wrong_command_line(self):
+        self.assert_refused(self.report("--out", self.out), 2, "BAG")
+        self.assert_refused(self.report(self.stepped), 2, "--out")
+        self.assert_refused(self.report(self.stepped, "--out", self.out, "--resolution", "much"), 2, "--resolution", "much")
+
+
+if __name__ == "__main__":
+    unittest.main()

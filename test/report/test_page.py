@@ -1,0 +1,242 @@
+#!/usr/bin/python3
+"""The page in a headless Chromium: no complaint, no request, every chart drawn; zoom, choice of the step, downloads."""
+
+import csv
+import io
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path.insert(0, HERE)
+import recorded  # noqa: E402
+from browser import Browser, executable  # noqa: E402
+
+import vibro_impact  # noqa: E402
+
+SCRIPT = os.path.join(HERE, "..", "..", "scripts", "report")
+STEPS = [1.2, 1.6, 2.0, 2.6]
+# What a chart must have drawn, of which there is at least so many.
+MARKS = ".plot .scatterlayer path.js-line, .plot .scatterlayer path.point, .plot .barlayer path, .plot .heatmaplayer image"
+
+
+@unittest.skipUnless(executable("chromium", "chromium-browser", "google-chrome") and executable("chromedriver"), "there is no Chromium")
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        path = lambda name: os.path.join(cls.folder.name, name)  # noqa: E731
+        drive = recorded.stepped_sine(STEPS, 40)
+        back = recorded.stepped_sine(STEPS[::-1], 40)
+        cls.bag = path("up.bag")
+        recorded.write_bag(cls.bag, recorded.configuration(), drive)
+        recorded.write_bag(path("down.bag"), recorded.configuration(), back)
+        recorded.write_bag(path("linear.bag"), recorded.configuration(clearance=1e-2), recorded.random_drive(4.0))
+        recorded.write_bag(path("random.bag"), recorded.configuration(clearance=2e-6), recorded.random_drive(4.0))
+        cls.stepped, cls.linear, cls.random = path("stepped.html"), path("linear.html"), path("random.html")
+        for arguments in (
+            [cls.bag, "--with", path("down.bag"), "--out", cls.stepped],
+            [path("linear.bag"), "--out", cls.linear],
+            [path("random.bag"), "--out", cls.random],
+        ):
+            subprocess.run([SCRIPT, *arguments], check=True, stderr=subprocess.DEVNULL)
+        cls.browser = Browser()
+        cls.addClassCleanup(cls.browser.close)
+
+    def open(self, page):
+        self.browser.open(page)
+        self.assert_no_complaint()
+
+    def assert_no_complaint(self):
+        said, asked = self.browser.complaints()
+        self.assertEqual((said, asked), ([], []))
+
+    def value(self, script, *arguments):
+        return self.browser.value(script, *arguments)
+
+    def plot(self, key):
+        """The element that plotly.js has drawn into."""
+        return "document.querySelector(\"figure[data-chart='%s'] .plot\")" % key
+
+    def assert_all_drawn(self, *charts):
+        """These charts and all others of the page, each axis with a title that ends in a unit."""
+        self.value("await window.vibroImpactReport.drawAll()")
+        keys = self.value("window.vibroImpactReport.charts()")
+        self.assertEqual(set(charts) - set(keys), set())
+        for key in keys:
+            marks = self.value("[...document.querySelector(\"figure[data-chart='%s']\").querySelectorAll(given[0])].length" % key, MARKS)
+            self.assertGreater(marks, 0, key)
+            titles = self.value(
+                "Object.entries(%s._fullLayout).filter(([key]) => /^[xy]axis\\d*$/.test(key)).map(([, axis]) => axis.title.text)" % self.plot(key)
+            )
+            self.assertGreaterEqual(len(titles), 2)
+            for title in titles:
+                self.assertRegex(title, r"\(.+\)$", key)
+        self.assert_no_complaint()
+        return keys
+
+    def test_everything_of_a_stepped_sine_is_drawn(self):
+        self.open(self.stepped)
+        histograms = ["histogram_" + name for name in ("impulse", "duration", "peak_force", "approach_speed")]
+        self.assert_all_drawn(
+            "overview", "impulse_response", "period_map", "stroboscopic", "waterfall_gap", "waterfall_force",
+            "step_time", "step_portrait", "step_spectrum", *histograms
+        )  # fmt: skip
+        # Both branches, told apart by colour and by marker.
+        markers = self.value(self.plot("impulse_response") + ".data.map((trace) => [trace.name, trace.marker.color, trace.marker.symbol])")
+        self.assertEqual([name for name, _, _ in markers], ["drive upwards, first run", "drive downwards, second run"])
+        self.assertEqual([len({marker[i] for marker in markers}) for i in (1, 2)], [2, 2])
+
+    def test_everything_of_random_runs_is_drawn(self):
+        self.open(self.linear)
+        self.assert_all_drawn("overview", "excitation_density", "frf_gap", "waterfall_gap", "step_time", "step_portrait", "step_spectrum")
+        names = self.value(self.plot("frf_gap") + ".data.map((trace) => trace.name)")
+        self.assertIn("closed form", names)
+        self.open(self.random)
+        self.assert_all_drawn("excitation_density", "frf_gap", "frf_force", "histogram_impulse", "waterfall_force")
+        self.assertNotIn("closed form", self.value(self.plot("frf_gap") + ".data.map((trace) => trace.name)"))
+
+    def test_charts_are_drawn_when_they_come_into_view(self):
+        self.open(self.stepped)
+        drawn = lambda key: self.value("document.querySelector(\"figure[data-chart='%s']\").dataset.drawn || ''" % key)  # noqa: E731
+        self.assertEqual(drawn("waterfall_force"), "")
+        self.value("document.querySelector(\"figure[data-chart='waterfall_force']\").scrollIntoView()")
+        self.browser.wait(lambda: drawn("waterfall_force"), "the chart in view")
+
+    def test_another_step_can_be_chosen(self):
+        self.open(self.stepped)
+        self.value("document.getElementById('step').scrollIntoView()")
+        self.value("await window.vibroImpactReport.choose(1)")
+        recording = vibro_impact.read_bag(self.bag)
+        for number in range(len(STEPS)):
+            self.value(
+                "(() => { const choice = document.getElementById('step-choice'); choice.value = given[0]; choice.dispatchEvent(new Event('change')); })()",
+                str(number),
+            )
+            self.value("await window.vibroImpactReport.draw('step_time')")
+            data = self.value(
+                "(() => { const trace = %s.data.find((t) => t.name === 'gap: every sample'); return [trace.x, trace.y]; })()" % self.plot("step_time")
+            )
+            unit = self.value("JSON.parse(document.getElementById('report-data').textContent).units.gap.factor")
+            time, gap = np.array(data[0]), np.array(data[1]) / unit
+            first = int(round(time[0] / recorded.PERIOD))
+            np.testing.assert_allclose(gap, recording.gap[first : first + len(gap)], rtol=1e-6, atol=1e-12)
+            # Of that step, and of no other.
+            cycles = [40.0 / (omega * recorded.FREQUENCY) for omega in STEPS]
+            self.assertGreater(time[0], sum(cycles[:number]) - 1e-3)
+            self.assertLess(time[-1], sum(cycles[: number + 1]) + 1e-3)
+        before = self.value("document.getElementById('step-choice').value")
+        self.value("document.getElementById('step-back').click()")
+        self.assertEqual(int(self.value("document.getElementById('step-choice').value")), int(before) - 1)
+        self.assert_no_complaint()
+
+    def test_a_click_on_a_point_chooses_its_step(self):
+        self.open(self.stepped)
+        self.value("await window.vibroImpactReport.draw('impulse_response')")
+        self.value("%s.emit('plotly_click', {points: [{customdata: 3}]})" % self.plot("impulse_response"))
+        self.assertEqual(self.value("document.getElementById('step-choice').value"), "3")
+        steps = self.value(self.plot("impulse_response") + ".data[0].customdata")
+        self.assertEqual(sorted(set(steps)), [0, 1, 2, 3])
+
+    def test_zooms_by_mouse_and_by_key(self):
+        self.open(self.stepped)
+        self.value("await window.vibroImpactReport.draw('step_time')")
+        plot = self.plot("step_time")
+        limits = lambda: self.value(plot + "._fullLayout.xaxis.range")  # noqa: E731
+        self.value(plot + ".scrollIntoView({block: 'center'})")
+        before = limits()
+        box = self.value("(() => { const r = %s.querySelector('.nsewdrag').getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()" % plot)
+        x, y, width, height = box
+        for kind, at, buttons in (("mousePressed", 0.25, 1), ("mouseMoved", 0.5, 1), ("mouseMoved", 0.75, 1), ("mouseReleased", 0.75, 0)):
+            event = {"type": kind, "x": x + at * width, "y": y + 0.5 * height, "buttons": buttons, "button": "left", "clickCount": 1}
+            self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", event)
+        self.browser.wait(lambda: limits() != before, "the zoom")
+        now, span = limits(), before[1] - before[0]
+        self.assertAlmostEqual((now[0] - before[0]) / span, 0.25, delta=0.02)
+        self.assertAlmostEqual((now[1] - before[0]) / span, 0.75, delta=0.02)
+        figure = "document.querySelector(\"figure[data-chart='step_time']\")"
+        self.value(figure + ".focus()")
+        self.value(figure + ".dispatchEvent(new KeyboardEvent('keydown', {key: '+', bubbles: true, cancelable: true}))")
+        self.browser.wait(lambda: abs((limits()[1] - limits()[0]) / (now[1] - now[0]) - 0.5) < 1e-6, "the zoom by key")
+        self.value("[...%s.querySelectorAll('button')].find((b) => b.textContent === 'Whole step').click()" % figure)
+        self.value("await window.vibroImpactReport.draw('step_time')")
+        self.browser.wait(lambda: limits()[1] - limits()[0] > 2.0 * span, "the whole step")
+        self.assert_no_complaint()
+
+    def download(self, key, button, name):
+        self.value("[...document.querySelectorAll(\"figure[data-chart='%s'] button\")].find((b) => b.textContent === given[0]).click()" % key, button)
+        return self.browser.downloaded(name).decode("utf-8")
+
+    def test_every_chart_is_saved_as_svg_and_its_data_as_csv(self):
+        self.open(self.stepped)
+        # By the buttons, a chart of every kind; the others by what the buttons call.
+        names = {"impulse_response": "impulse_response", "waterfall_gap": "waterfall_gap", "step_time": "step_time_2"}
+        for key in self.value("window.vibroImpactReport.charts()"):
+            if key in names:
+                text = self.download(key, "Save as SVG", names[key] + ".svg")
+                table = self.download(key, "Save data as CSV", names[key] + ".csv")
+            else:
+                text = self.value("await window.vibroImpactReport.svg(given[0])", key)
+                table = self.value("await window.vibroImpactReport.csv(given[0])", key)
+            svg = xml.etree.ElementTree.fromstring(text)
+            self.assertEqual(svg.tag, "{http://www.w3.org/2000/svg}svg")
+            self.assertGreater(len(list(svg.iter())), 50, key)
+            rows = list(csv.reader(io.StringIO(table)))
+            self.assertGreater(len(rows), 1, key)
+            self.assertEqual({len(row) for row in rows}, {len(rows[0])}, key)
+            for row in rows[1:]:
+                for cell in row:
+                    self.assertTrue(cell == "" or np.isfinite(float(cell)), (key, cell))
+        self.assert_no_complaint()
+
+    def test_the_table_of_the_impulse_response_has_every_captured_impact(self):
+        self.open(self.stepped)
+        rows = list(csv.DictReader(io.StringIO(self.value("await window.vibroImpactReport.csv('impulse_response')"))))
+        found = vibro_impact.extract_responses(self.bag)
+        first = [row for row in rows if row["run"] == "1"]
+        self.assertEqual(len(first), len(found.impacts))
+        np.testing.assert_array_equal([float(row["impulse_N_s"]) for row in first], found.impacts["impulse"])
+        np.testing.assert_allclose([float(row["omega_star"]) for row in first], found.impacts["omega_star"], rtol=1e-12)
+        self.assertEqual({row["direction"] for row in first}, {"1"})
+        self.assertEqual({row["direction"] for row in rows if row["run"] == "2"}, {"-1"})
+
+    def test_a_logarithmic_axis_can_be_had(self):
+        self.open(self.stepped)
+        self.value("await window.vibroImpactReport.draw('impulse_response')")
+        self.value("[...document.querySelectorAll(\"figure[data-chart='impulse_response'] button\")].find((b) => b.textContent === 'Logarithmic y').click()")
+        self.browser.wait(lambda: self.value(self.plot("impulse_response") + "._fullLayout.yaxis.type") == "log", "the logarithmic axis")
+        self.assert_no_complaint()
+
+    def test_nothing_in_the_page_leads_to_a_server(self):
+        self.open(self.stepped)
+        self.value("await window.vibroImpactReport.draw('overview'), await window.vibroImpactReport.draw('waterfall_gap')")
+        titles = self.value("[...document.querySelectorAll('.modebar-btn')].map((b) => b.dataset.title)")
+        self.assertGreater(len(titles), 10)
+        for title in titles:
+            self.assertNotRegex(title, re.compile("share|cloud|server|plotly", re.IGNORECASE))
+        links = self.value("[...document.querySelectorAll('a')].map((a) => a.getAttribute('href'))")
+        self.assertTrue(all(link.startswith("#") for link in links if link), links)
+        # Were there a request, the browser would not let it out.
+        answer = self.browser.run("await fetch('http://127.0.0.1:9/')")
+        self.assertIn("error", answer)
+        said, asked = self.browser.complaints()
+        self.assertTrue(any("Content Security Policy" in line for line in said), said)
+
+    def test_is_wide_enough_for_a_laptop_and_prints_without_its_buttons(self):
+        self.open(self.stepped)
+        self.assertLessEqual(self.value("document.documentElement.scrollWidth"), self.value("window.innerWidth"))
+        self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        hidden = self.value("[...document.querySelectorAll('nav, .tools')].every((e) => getComputedStyle(e).display === 'none')")
+        self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        self.assertTrue(hidden)
+
+
+if __name__ == "__main__":
+    unittest.main()
