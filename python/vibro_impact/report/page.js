@@ -56,7 +56,7 @@
   const axisStyle = { showline: true, mirror: "all", linecolor: "#1a1a1a", ticks: "outside", gridcolor: "#e2e2e2", zerolinecolor: "#8c8c8c", automargin: true, exponentformat: "power", minexponent: 5, title: { standoff: 10 } };
 
   function laidOut(layout, traces, height) {
-    const legend = traces.filter((trace) => trace.showlegend !== false).length > 1;
+    const legend = layout.showlegend || traces.filter((trace) => trace.showlegend !== false).length > 1;
     const whole = {
       height: height,
       // Room for the buttons and, below them, the legend.

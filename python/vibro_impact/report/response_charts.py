@@ -69,6 +69,8 @@ def scatter(chart, runs, x, y, factor, hover, size=5.0):
                 charts.ref(names[0]), charts.ref(names[1], factor), label, colour, marker, size=size, hover=hover, **more
             )
         )
+    # A single branch has its legend, too: it says the direction.
+    chart.layout["showlegend"] = True
     return [np.concatenate(part) for part in (all_run, all_direction, all_x, all_y)]
 
 

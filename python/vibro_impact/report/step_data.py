@@ -18,13 +18,13 @@ LONGEST = 1 << 17
 
 def sizes(segments, budget):
     """(bins, samples, lines) for each of so many segments if all together shall take no more than `budget` characters: 4 arrays of
-    bins and 2 of samples by four bytes, 2 of lines by two, 4/3 characters a byte. A quarter is for the bins, a tenth for the
+    bins and 2 of samples by four bytes, 2 of lines by two, 4/3 characters a byte. A fifth is for the bins, a quarter for the
     lines. Compression comes on top, and is not counted on."""
     share = 0.75 * budget / max(1, segments) - 300.0
     return (
-        int(np.clip(0.25 * share / 16.0, 16, MOST_BINS)),
-        int(np.clip(0.65 * share / 8.0, 64, MOST_SAMPLES)),
-        int(np.clip(0.10 * share / 4.0, 32, MOST_LINES)),
+        int(np.clip(0.20 * share / 16.0, 16, MOST_BINS)),
+        int(np.clip(0.55 * share / 8.0, 64, MOST_SAMPLES)),
+        int(np.clip(0.25 * share / 4.0, 32, MOST_LINES)),
     )
 
 
