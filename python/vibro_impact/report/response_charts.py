@@ -10,10 +10,10 @@ from vibro_impact.report.segments import stroboscopic_points
 DISTINCT = 1.0 / 1500.0
 DRIVE = "drive frequency over the lowest free frequency, \u03c9* (1)"
 
-# direction: (words, colour, marker)
+# direction: (words, colour, marker). A cross and a circle are told apart without colour, and one on top of the other.
 BRANCHES = {
     1: ("upwards", charts.BLUE, "circle-open"),
-    -1: ("downwards", charts.VERMILION, "triangle-down-open"),
+    -1: ("downwards", charts.VERMILION, "x-thin-open"),
     0: ("one frequency", charts.BLUE, "circle-open"),
 }
 
@@ -43,7 +43,7 @@ def distinct(x, y):
     return np.sort(np.unique(np.column_stack((x, height)), axis=0, return_index=True)[1])
 
 
-def scatter(chart, runs, x, y, factor, hover, size=5.0):
+def scatter(chart, runs, x, y, factor, hover, size=6.0):
     """A trace for each branch of the points x[run], y[run] (lists of arrays, one a segment); the table has every point."""
     all_x, all_y, all_run, all_direction = [], [], [], []
     for number, direction, label, colour, marker in branches(runs):
@@ -156,7 +156,7 @@ def stroboscopic(runs):
     where = [
         [np.full(len(part), segment.omega_star) for part, segment in zip(run_values, run.segments)] for run_values, run in zip(values, runs)
     ]
-    run, direction, x, y = scatter(chart, runs, where, values, factor, "\u03c9* %{x:.4f}, gap %{y:.4g} " + unit + "m", size=3.5)
+    run, direction, x, y = scatter(chart, runs, where, values, factor, "\u03c9* %{x:.4f}, gap %{y:.4g} " + unit + "m", size=5.0)
     chart.column("run", "run", run, "i4")
     chart.column("direction", "direction", direction, "i4")
     chart.column("omega_star", "omega_star", x)
