@@ -7,6 +7,7 @@ it in a headless Chromium. Needs the setup.bash of the build, chromium and chrom
 
 import argparse
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,12 @@ def stepped_drive(seconds):
     omega_stars = np.linspace(0.5, 4.0, 701)
     cycles = seconds / np.sum(1.0 / (omega_stars * recorded.FREQUENCY))
     return recorded.stepped_sine(omega_stars, int(cycles))
+
+
+def processor_time():
+    """Of the programs that have ended, s."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def opening_times(page):
@@ -58,15 +65,15 @@ def main():
         if not os.path.exists(bag):
             drive = stepped_drive(arguments.seconds) if arguments.drive == "stepped" else recorded.random_drive(arguments.seconds)
             recorded.write_bag(bag, recorded.configuration(clearance=0.0 if arguments.drive == "stepped" else 2e-6), drive)
-        print("bag: %.0f MB" % (os.path.getsize(bag) / 1e6))
+        print("bag: %.0f MB, load average %.1f" % (os.path.getsize(bag) / 1e6, os.getloadavg()[0]))
         for _ in range(arguments.runs):
-            begun = time.monotonic()
+            begun, used = time.monotonic(), processor_time()
             subprocess.run([SCRIPT, bag, "--out", page], check=True, stderr=subprocess.DEVNULL)
-            made = time.monotonic() - begun
+            made, used = time.monotonic() - begun, processor_time() - used
             loaded, first, drawn, complaints = opening_times(page)
             print(
-                "report %.1f s, page %.2f MB; Chromium: loaded %.2f s, first chart %.2f s, all charts %.1f s later; complaints %s"
-                % (made, os.path.getsize(page) / 1e6, loaded, first, drawn, complaints)
+                "report %.1f s (%.1f s of processor time), page %.2f MB; Chromium: loaded %.2f s, first chart %.2f s, all charts %.1f s later; complaints %s"
+                % (made, used, os.path.getsize(page) / 1e6, loaded, first, drawn, complaints)
             )
 
 

@@ -266,6 +266,13 @@ class StepData(unittest.TestCase):
         self.assertEqual(data["begin"] + data["samples"], 15000 - 25)
         np.testing.assert_array_equal(end[0], gap[data["begin"] : 14975].astype("f4"))
 
+    def test_takes_a_length_that_is_transformed_fast(self):
+        self.assertEqual([step_data.largest_factor(n) for n in (1, 2, 97, 1024, 2 * 3 * 49)], [1, 2, 97, 2, 7])
+        length = step_data.quick_length(100, 115.12)
+        self.assertLess(step_data.largest_factor(length), 100)
+        self.assertLess(abs(length / 115.12 - round(length / 115.12)), 0.01)
+        self.assertEqual(step_data.quick_length(1, 7.0), 7)
+
     def test_stays_within_its_budget(self):
         for number in (1, 40, 701, 1500):
             bins, samples, lines = step_data.sizes(number, 9.0e6)
