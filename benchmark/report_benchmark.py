@@ -1,9 +1,8 @@
 #!/usr/bin/python3
 """How long the report of a ten-minute 50 kHz bag takes, how large the page is, and how fast Chromium opens it.
 
-Records a stepped sine of 701 frequencies at 50 kHz, answered by the core, as test/report/recorded.py does; makes the page; opens
-it in a headless Chromium. Needs the setup.bash of the build, chromium and chromium-driver.
-"""
+Records a stepped sine of 701 frequencies at 50 kHz, answered by the core, as test/report/recorded.py does; makes the
+page; opens it in a headless Chromium. Needs the setup.bash of the build, chromium and chromium-driver. """
 
 import argparse
 import os
@@ -56,15 +55,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=600.0, help="length of the recording (default: %(default)s)")
     parser.add_argument("--drive", choices=("stepped", "random"), default="stepped")
-    parser.add_argument("--runs", type=int, default=3, help="how often the page is made and opened (default: %(default)s)")
+    parser.add_argument(
+        "--runs", type=int, default=3, help="how often the page is made and opened (default: %(default)s)"
+    )
     parser.add_argument("--folder", help="where bag and page are left (default: nowhere)")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.folder or temporary
         bag, page = (os.path.join(folder, "run." + ending) for ending in ("bag", "html"))
         if not os.path.exists(bag):
-            drive = stepped_drive(arguments.seconds) if arguments.drive == "stepped" else recorded.random_drive(arguments.seconds)
-            recorded.write_bag(bag, recorded.configuration(clearance=0.0 if arguments.drive == "stepped" else 2e-6), drive)
+            drive = (
+                stepped_drive(arguments.seconds)
+                if arguments.drive == "stepped"
+                else recorded.random_drive(arguments.seconds)
+            )
+            recorded.write_bag(
+                bag, recorded.configuration(clearance=0.0 if arguments.drive == "stepped" else 2e-6), drive
+            )
         print("bag: %.0f MB, load average %.1f" % (os.path.getsize(bag) / 1e6, os.getloadavg()[0]))
         for _ in range(arguments.runs):
             begun, used = time.monotonic(), processor_time()
@@ -72,7 +79,8 @@ def main():
             made, used = time.monotonic() - begun, processor_time() - used
             loaded, first, drawn, complaints = opening_times(page)
             print(
-                "report %.1f s (%.1f s of processor time), page %.2f MB; Chromium: loaded %.2f s, first chart %.2f s, all charts %.1f s later; complaints %s"
+                "report %.1f s (%.1f s of processor time), page %.2f MB; Chromium: loaded %.2f s, first chart %.2f s,"
+                " all charts %.1f s later; complaints %s"
                 % (made, used, os.path.getsize(page) / 1e6, loaded, first, drawn, complaints)
             )
 

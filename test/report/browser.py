@@ -66,9 +66,10 @@ class Browser:
     def run(self, script, *arguments):
         """The value of an expression of JavaScript, awaited; its arguments are `given[0]`, ..."""
         return self.driver.execute_async_script(
-            "const done = arguments[arguments.length - 1], given = arguments;"
-            "(async () => (" + script + "))().then((value) => done({value}), (error) => done({error: String(error.stack || error)}));",
-            *arguments
+            "const done = arguments[arguments.length - 1], given = arguments;(async () => ("
+            + script
+            + "))().then((value) => done({value}), (error) => done({error: String(error.stack || error)}));",
+            *arguments,
         )
 
     def value(self, script, *arguments):
@@ -105,6 +106,8 @@ class Browser:
         try:
             self.wait(lambda: os.path.exists(path) and not os.path.exists(path + ".crdownload"), "download " + name)
         except AssertionError as error:
-            raise AssertionError("%s; there are %s; the console says %s" % (error, os.listdir(self.downloads), self.complaints()[0]))
+            raise AssertionError(
+                "%s; there are %s; the console says %s" % (error, os.listdir(self.downloads), self.complaints()[0])
+            )
         with open(path, "rb") as file:
             return file.read()

@@ -17,11 +17,15 @@ FREQUENCY = 271.45727650517387  # of beam 1, Hz
 
 def configuration(clearance=0.0, damping=0.01):
     """Two beams at midspan, the second a thousand times stiffer; the default basis."""
-    return "beam1: %s\nbeam2: %s\ncontact: {stiffness: 24309.426302924, clearance: %r}\ndamping: {free: %r, contact: 0.05}\n" % (
-        BEAM % 1.66e9,
-        BEAM % 1.66e12,
-        clearance,
-        damping,
+    return (
+        "beam1: %s\nbeam2: %s\ncontact: {stiffness: 24309.426302924, clearance: %r}\ndamping: {free: %r, contact:"
+        " 0.05}\n"
+        % (
+            BEAM % 1.66e9,
+            BEAM % 1.66e12,
+            clearance,
+            damping,
+        )
     )
 
 
@@ -47,8 +51,8 @@ def stamp_of(seconds):
 
 
 def write_bag(path, configuration_text, acceleration, lost_blocks=()):
-    """What the simulator answers to `acceleration`, and its impacts, in a bag. `lost_blocks`: numbers of blocks of the gap that
-    are not in it."""
+    """What the simulator answers to `acceleration`, and its impacts, in a bag. `lost_blocks`: numbers of blocks of the
+    gap that are not in it."""
     model = vibro_impact.Model(configuration_text)
     simulation = model.simulation(PERIOD)
 
@@ -67,12 +71,18 @@ def write_bag(path, configuration_text, acceleration, lost_blocks=()):
             mapping_loss=model.mapping_loss,
         )
         bag.write("/model_info", info, START)
-        bag.write("/stream_start", StreamStart(header=header(START), seq=0, sample_period=PERIOD, cause=StreamStart.FIRST), START)
+        bag.write(
+            "/stream_start",
+            StreamStart(header=header(START), seq=0, sample_period=PERIOD, cause=StreamStart.FIRST),
+            START,
+        )
 
         def record(impacts, time):
             for impact in impacts:
                 sample = int(numpy.floor(impact["onset"] / PERIOD))
-                message = Impact(header=header(stamp_of(impact["onset"])), seq=sample, offset=impact["onset"] - sample * PERIOD)
+                message = Impact(
+                    header=header(stamp_of(impact["onset"])), seq=sample, offset=impact["onset"] - sample * PERIOD
+                )
                 for field in impact.dtype.names:
                     if field != "onset":
                         setattr(message, field, impact[field].item())

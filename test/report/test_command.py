@@ -43,7 +43,9 @@ class Command(unittest.TestCase):
         self.out = os.path.join(out.name, "page.html")
 
     def report(self, *arguments):
-        return subprocess.run([SCRIPT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        return subprocess.run(
+            [SCRIPT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True
+        )
 
     def page(self, *arguments):
         """(text of the page, its data)."""
@@ -52,7 +54,9 @@ class Command(unittest.TestCase):
         self.assertEqual(os.listdir(self.folder_out), ["page.html"])
         with open(self.out, encoding="utf-8") as file:
             text = file.read()
-        return text, json.loads(re.search(r'<script type="application/json" id="report-data">(.*?)</script>', text).group(1))
+        return text, json.loads(
+            re.search(r'<script type="application/json" id="report-data">(.*?)</script>', text).group(1)
+        )
 
     def assert_says(self, text, words):
         # Without the page itself in the message.
@@ -75,7 +79,15 @@ class Command(unittest.TestCase):
 
     def test_a_stepped_sine_gives_responses_and_no_frequency_response_function(self):
         text, data = self.page(self.stepped)
-        for key in ("overview", "impulse_response", "period_map", "stroboscopic", "histogram_impulse", "waterfall_gap", "waterfall_force"):
+        for key in (
+            "overview",
+            "impulse_response",
+            "period_map",
+            "stroboscopic",
+            "histogram_impulse",
+            "waterfall_gap",
+            "waterfall_force",
+        ):
             self.assertIn(key, data["charts"])
         self.assertNotIn("frf_gap", data["charts"])
         self.assert_says(text, "Left out: the drive is not random (3 steps of constant frequency, 325.7 to 542.9 Hz).")
@@ -133,18 +145,28 @@ class Command(unittest.TestCase):
         self.assert_refused(self.report(self.stepped, "--out", "/nowhere/page.html"), 1, "--out", "/nowhere/page.html")
         self.assert_refused(self.report(self.stepped, "--out", "/proc/page.html"), 1, "--out", "/proc/page.html")
         self.assert_refused(self.report(self.stepped, "--out", self.folder_out), 1, "--out", "is a folder")
-        self.assert_refused(self.report(self.stepped, "--out", self.out, "--step", "4", "--no-replay"), 1, "--step", "4", "1 to 3")
-        self.assert_refused(self.report(self.stepped, "--out", self.out, "--step", "3.9", "--no-replay"), 1, "--step", "3.9", "1.2 to 2")
+        self.assert_refused(
+            self.report(self.stepped, "--out", self.out, "--step", "4", "--no-replay"), 1, "--step", "4", "1 to 3"
+        )
+        self.assert_refused(
+            self.report(self.stepped, "--out", self.out, "--step", "3.9", "--no-replay"), 1, "--step", "3.9", "1.2 to 2"
+        )
         self.assert_refused(self.report(self.stepped, "--out", self.out, "--step", "nan.", "--no-replay"), 1, "--step")
-        self.assert_refused(self.report(self.linear, "--out", self.out, "--step", "1.5", "--no-replay"), 1, "--step", "no steps")
+        self.assert_refused(
+            self.report(self.linear, "--out", self.out, "--step", "1.5", "--no-replay"), 1, "--step", "no steps"
+        )
         self.assert_refused(self.report(self.stepped, "--out", self.out, "--resolution", "-1"), 1, "--resolution", "-1")
-        self.assert_refused(self.report(self.stepped, "--out", self.out, "--resolution", "nan"), 1, "--resolution", "nan")
+        self.assert_refused(
+            self.report(self.stepped, "--out", self.out, "--resolution", "nan"), 1, "--resolution", "nan"
+        )
         self.assert_refused(self.report(self.stepped, "--out", self.out, "--namespace", "/nobody"), 1, "/nobody")
 
     def test_refuses_a_wrong_command_line(self):
         self.assert_refused(self.report("--out", self.out), 2, "BAG")
         self.assert_refused(self.report(self.stepped), 2, "--out")
-        self.assert_refused(self.report(self.stepped, "--out", self.out, "--resolution", "much"), 2, "--resolution", "much")
+        self.assert_refused(
+            self.report(self.stepped, "--out", self.out, "--resolution", "much"), 2, "--resolution", "much"
+        )
 
 
 if __name__ == "__main__":

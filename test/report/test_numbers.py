@@ -15,7 +15,16 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 import recorded  # noqa: E402
 
 import vibro_impact  # noqa: E402
-from vibro_impact.report import impact_charts, model, packing, response_charts, segments, spectra, spectral_charts, step_data  # noqa: E402
+from vibro_impact.report import (
+    impact_charts,
+    model,
+    packing,
+    response_charts,
+    segments,
+    spectra,
+    spectral_charts,
+    step_data,
+)  # noqa: E402
 
 PERIOD = 1.0e-3
 
@@ -26,7 +35,9 @@ def unpacked(packed):
     import zlib
 
     kind = np.dtype(packed["t"]).newbyteorder("<")
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["z"])), dtype=np.uint8).reshape(kind.itemsize, packed["n"])
+    planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["z"])), dtype=np.uint8).reshape(
+        kind.itemsize, packed["n"]
+    )
     return np.frombuffer(planes.T.tobytes(), dtype=kind)
 
 
@@ -84,7 +95,9 @@ class FrequencyResponse(unittest.TestCase):
 
     def test_overlapping_segments_are_worth_less_than_their_number(self):
         self.assertAlmostEqual(spectra.independent_averages(1, spectra.hann(64)), 1.0)
-        self.assertAlmostEqual(spectra.independent_averages(1000, spectra.hann(4096)), 1000.0 / (1.0 + 2.0 / 36.0), delta=0.2)
+        self.assertAlmostEqual(
+            spectra.independent_averages(1000, spectra.hann(4096)), 1000.0 / (1.0 + 2.0 / 36.0), delta=0.2
+        )
 
     def test_resolution_follows_the_damping_or_leaves_enough_averages(self):
         self.assertEqual(spectra.segment_length(10**9, 2e-5, 5.4), 1 << 17)
@@ -96,7 +109,8 @@ class LinearRun(unittest.TestCase):
 
     @staticmethod
     def closed_form(frequency):
-        """Gap per base acceleration of the two beams, mode by mode (doc/model.md, sections 1 and 3); 2 kHz and below."""
+        """Gap per base acceleration of the two beams, mode by mode (doc/model.md, sections 1 and 3); 2 kHz and
+        below."""
         omega = 2.0 * np.pi * frequency
         total = np.zeros(len(frequency), dtype=complex)
         length, height, width, density = 0.0529, 0.00127, 0.0127, 954.0
@@ -116,7 +130,9 @@ class LinearRun(unittest.TestCase):
         gap, force, impacts = core.simulation(recorded.PERIOD).advance(acceleration)
         first = int(skipped / recorded.PERIOD)
         recording = recording_of(acceleration[first:], gap[first:], force[first:], recorded.PERIOD)
-        recording.models = [types.SimpleNamespace(configuration=core.configuration, free_frequencies=core.free_frequencies)]
+        recording.models = [
+            types.SimpleNamespace(configuration=core.configuration, free_frequencies=core.free_frequencies)
+        ]
         return recording, impacts
 
     def estimate(self, recording):
@@ -132,7 +148,8 @@ class LinearRun(unittest.TestCase):
         ratio = found.h1[shown] / self.closed_form(found.frequency[shown])
         self.assertLess(np.max(np.abs(np.abs(ratio) - 1.0)), 0.02)
         self.assertLess(np.max(np.abs(np.degrees(np.angle(ratio)))), 2.0)
-        # The page's own closed form is that of the model, and accounts for the straight lines between samples up to Nyquist.
+        # The page's own closed form is that of the model, and accounts for the straight lines between samples up to
+        # Nyquist.
         drawn = model.receptance(recording, model.linear_state(recording, False, False), found.frequency)
         wanted = self.closed_form(found.frequency[shown]) * np.sinc(found.frequency[shown] * recorded.PERIOD) ** 2
         np.testing.assert_allclose(drawn[shown], wanted, rtol=1e-3)
@@ -188,7 +205,9 @@ class Spectra(unittest.TestCase):
         self.assertLess(spectra.spectral_lines(scipy.signal.chirp(time, 5.0, 200.0, 100.0, "logarithmic")), 16.0)
         self.assertGreater(spectra.spectral_lines(np.random.RandomState(1).standard_normal(200000)), 500.0)
         band = scipy.signal.butter(4, (10.0, 40.0), "bandpass", fs=1.0 / PERIOD, output="sos")
-        self.assertGreater(spectra.spectral_lines(scipy.signal.sosfilt(band, np.random.RandomState(1).standard_normal(200000))), 40.0)
+        self.assertGreater(
+            spectra.spectral_lines(scipy.signal.sosfilt(band, np.random.RandomState(1).standard_normal(200000))), 40.0
+        )
         self.assertIsNone(spectra.spectral_lines(np.zeros(1000)))
         self.assertIsNone(spectra.spectral_lines(np.full(100000, np.nan)))
 
@@ -247,7 +266,10 @@ class Packing(unittest.TestCase):
         np.testing.assert_array_equal(unpacked(packing.quantised(np.full(3, 2.5))), 0)
 
     def test_units_for_reading(self):
-        self.assertEqual([packing.prefix(v)[1] for v in (0.0, 2e-6, 0.999, 1.0, 4e4, 1e-15, math.inf)], ["", "\u00b5", "m", "", "k", "p", ""])
+        self.assertEqual(
+            [packing.prefix(v)[1] for v in (0.0, 2e-6, 0.999, 1.0, 4e4, 1e-15, math.inf)],
+            ["", "\u00b5", "m", "", "k", "p", ""],
+        )
         self.assertAlmostEqual(packing.prefix(2e-6)[0] * 2e-6, 2.0)
 
 
@@ -285,7 +307,12 @@ class StepData(unittest.TestCase):
 
 class Charts(unittest.TestCase):
     def test_bins_hold_every_impact(self):
-        for values in (np.random.RandomState(1).gamma(2.0, 1e-3, 5000), np.full(7, 3.0), np.zeros(3), np.array([1.0, 2.0])):
+        for values in (
+            np.random.RandomState(1).gamma(2.0, 1e-3, 5000),
+            np.full(7, 3.0),
+            np.zeros(3),
+            np.array([1.0, 2.0]),
+        ):
             counts, edges = impact_charts.bins(values)
             self.assertEqual(counts.sum(), len(values))
             self.assertLessEqual(len(counts), impact_charts.MOST_BINS)

@@ -23,10 +23,14 @@ import vibro_impact  # noqa: E402
 SCRIPT = os.path.join(HERE, "..", "..", "scripts", "report")
 STEPS = [1.2, 1.6, 2.0, 2.6]
 # What a chart must have drawn, of which there is at least so many.
-MARKS = ".plot .scatterlayer path.js-line, .plot .scatterlayer path.point, .plot .barlayer path, .plot .heatmaplayer image"
+MARKS = (
+    ".plot .scatterlayer path.js-line, .plot .scatterlayer path.point, .plot .barlayer path, .plot .heatmaplayer image"
+)
 
 
-@unittest.skipUnless(executable("chromium", "chromium-browser", "google-chrome") and executable("chromedriver"), "there is no Chromium")
+@unittest.skipUnless(
+    executable("chromium", "chromium-browser", "google-chrome") and executable("chromedriver"), "there is no Chromium"
+)
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -71,10 +75,15 @@ class Page(unittest.TestCase):
         keys = self.value("window.vibroImpactReport.charts()")
         self.assertEqual(set(charts) - set(keys), set())
         for key in keys:
-            marks = self.value("[...document.querySelector(\"figure[data-chart='%s']\").querySelectorAll(given[0])].length" % key, MARKS)
+            marks = self.value(
+                "[...document.querySelector(\"figure[data-chart='%s']\").querySelectorAll(given[0])].length" % key,
+                MARKS,
+            )
             self.assertGreater(marks, 0, key)
             titles = self.value(
-                "Object.entries(%s._fullLayout).filter(([key]) => /^[xy]axis\\d*$/.test(key)).map(([, axis]) => axis.title.text)" % self.plot(key)
+                "Object.entries(%s._fullLayout).filter(([key]) => /^[xy]axis\\d*$/.test(key)).map(([, axis]) =>"
+                " axis.title.text)"
+                % self.plot(key)
             )
             self.assertGreaterEqual(len(titles), 2)
             for title in titles:
@@ -90,13 +99,18 @@ class Page(unittest.TestCase):
             "step_time", "step_portrait", "step_spectrum", *histograms
         )  # fmt: skip
         # Both branches, told apart by colour and by marker.
-        markers = self.value(self.plot("impulse_response") + ".data.map((trace) => [trace.name, trace.marker.color, trace.marker.symbol])")
+        markers = self.value(
+            self.plot("impulse_response")
+            + ".data.map((trace) => [trace.name, trace.marker.color, trace.marker.symbol])"
+        )
         self.assertEqual([name for name, _, _ in markers], ["drive upwards, first run", "drive downwards, second run"])
         self.assertEqual([len({marker[i] for marker in markers}) for i in (1, 2)], [2, 2])
 
     def test_everything_of_random_runs_is_drawn(self):
         self.open(self.linear)
-        self.assert_all_drawn("overview", "excitation_density", "frf_gap", "waterfall_gap", "step_time", "step_portrait", "step_spectrum")
+        self.assert_all_drawn(
+            "overview", "excitation_density", "frf_gap", "waterfall_gap", "step_time", "step_portrait", "step_spectrum"
+        )
         names = self.value(self.plot("frf_gap") + ".data.map((trace) => trace.name)")
         self.assertIn("closed form", names)
         self.open(self.random)
@@ -105,7 +119,9 @@ class Page(unittest.TestCase):
 
     def test_charts_are_drawn_when_they_come_into_view(self):
         self.open(self.stepped)
-        drawn = lambda key: self.value("document.querySelector(\"figure[data-chart='%s']\").dataset.drawn || ''" % key)  # noqa: E731
+        drawn = lambda key: self.value(
+            "document.querySelector(\"figure[data-chart='%s']\").dataset.drawn || ''" % key
+        )  # noqa: E731
         self.assertEqual(drawn("waterfall_force"), "")
         self.value("document.querySelector(\"figure[data-chart='waterfall_force']\").scrollIntoView()")
         self.browser.wait(lambda: drawn("waterfall_force"), "the chart in view")
@@ -117,12 +133,17 @@ class Page(unittest.TestCase):
         recording = vibro_impact.read_bag(self.bag)
         for number in range(len(STEPS)):
             self.value(
-                "(() => { const choice = document.getElementById('step-choice'); choice.value = given[0]; choice.dispatchEvent(new Event('change')); })()",
+                (
+                    "(() => { const choice = document.getElementById('step-choice'); choice.value = given[0];"
+                    " choice.dispatchEvent(new Event('change')); })()"
+                ),
                 str(number),
             )
             self.value("await window.vibroImpactReport.draw('step_time')")
             data = self.value(
-                "(() => { const trace = %s.data.find((t) => t.name === 'gap: every sample'); return [trace.x, trace.y]; })()" % self.plot("step_time")
+                "(() => { const trace = %s.data.find((t) => t.name === 'gap: every sample'); return [trace.x, trace.y];"
+                " })()"
+                % self.plot("step_time")
             )
             unit = self.value("JSON.parse(document.getElementById('report-data').textContent).units.gap.factor")
             time, gap = np.array(data[0]), np.array(data[1]) / unit
@@ -152,10 +173,25 @@ class Page(unittest.TestCase):
         limits = lambda: self.value(plot + "._fullLayout.xaxis.range")  # noqa: E731
         self.value(plot + ".scrollIntoView({block: 'center'})")
         before = limits()
-        box = self.value("(() => { const r = %s.querySelector('.nsewdrag').getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()" % plot)
+        box = self.value(
+            "(() => { const r = %s.querySelector('.nsewdrag').getBoundingClientRect(); return [r.x, r.y, r.width,"
+            " r.height]; })()" % plot
+        )
         x, y, width, height = box
-        for kind, at, buttons in (("mousePressed", 0.25, 1), ("mouseMoved", 0.5, 1), ("mouseMoved", 0.75, 1), ("mouseReleased", 0.75, 0)):
-            event = {"type": kind, "x": x + at * width, "y": y + 0.5 * height, "buttons": buttons, "button": "left", "clickCount": 1}
+        for kind, at, buttons in (
+            ("mousePressed", 0.25, 1),
+            ("mouseMoved", 0.5, 1),
+            ("mouseMoved", 0.75, 1),
+            ("mouseReleased", 0.75, 0),
+        ):
+            event = {
+                "type": kind,
+                "x": x + at * width,
+                "y": y + 0.5 * height,
+                "buttons": buttons,
+                "button": "left",
+                "clickCount": 1,
+            }
             self.browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", event)
         self.browser.wait(lambda: limits() != before, "the zoom")
         now, span = limits(), before[1] - before[0]
@@ -171,7 +207,11 @@ class Page(unittest.TestCase):
         self.assert_no_complaint()
 
     def download(self, key, button, name):
-        self.value("[...document.querySelectorAll(\"figure[data-chart='%s'] button\")].find((b) => b.textContent === given[0]).click()" % key, button)
+        self.value(
+            "[...document.querySelectorAll(\"figure[data-chart='%s'] button\")].find((b) => b.textContent ==="
+            " given[0]).click()" % key,
+            button,
+        )
         return self.browser.downloaded(name).decode("utf-8")
 
     def test_every_chart_is_saved_as_svg_and_its_data_as_csv(self):
@@ -210,13 +250,21 @@ class Page(unittest.TestCase):
     def test_a_logarithmic_axis_can_be_had(self):
         self.open(self.stepped)
         self.value("await window.vibroImpactReport.draw('impulse_response')")
-        self.value("[...document.querySelectorAll(\"figure[data-chart='impulse_response'] button\")].find((b) => b.textContent === 'Logarithmic y').click()")
-        self.browser.wait(lambda: self.value(self.plot("impulse_response") + "._fullLayout.yaxis.type") == "log", "the logarithmic axis")
+        self.value(
+            "[...document.querySelectorAll(\"figure[data-chart='impulse_response'] button\")].find((b) => b.textContent"
+            " === 'Logarithmic y').click()"
+        )
+        self.browser.wait(
+            lambda: self.value(self.plot("impulse_response") + "._fullLayout.yaxis.type") == "log",
+            "the logarithmic axis",
+        )
         self.assert_no_complaint()
 
     def test_nothing_in_the_page_leads_to_a_server(self):
         self.open(self.stepped)
-        self.value("await window.vibroImpactReport.draw('overview'), await window.vibroImpactReport.draw('waterfall_gap')")
+        self.value(
+            "await window.vibroImpactReport.draw('overview'), await window.vibroImpactReport.draw('waterfall_gap')"
+        )
         titles = self.value("[...document.querySelectorAll('.modebar-btn')].map((b) => b.dataset.title)")
         self.assertGreater(len(titles), 10)
         for title in titles:
@@ -233,7 +281,9 @@ class Page(unittest.TestCase):
         self.open(self.stepped)
         self.assertLessEqual(self.value("document.documentElement.scrollWidth"), self.value("window.innerWidth"))
         self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
-        hidden = self.value("[...document.querySelectorAll('nav, .tools')].every((e) => getComputedStyle(e).display === 'none')")
+        hidden = self.value(
+            "[...document.querySelectorAll('nav, .tools')].every((e) => getComputedStyle(e).display === 'none')"
+        )
         self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
         self.assertTrue(hidden)
 

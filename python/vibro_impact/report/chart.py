@@ -3,15 +3,23 @@
 from vibro_impact.report.packing import packed
 
 # Okabe and Ito's colours: told apart by the colour-blind; markers and dashes differ as well, for paper.
-BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, BLACK = "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#000000"
+BLUE, VERMILION, GREEN, ORANGE, SKY, PURPLE, BLACK = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#E69F00",
+    "#56B4E9",
+    "#CC79A7",
+    "#000000",
+)
 GREY = "#767676"
 
 
 class Chart:
-    """A chart: `key` (its name in the page and in the files saved), `title`, `caption` (HTML: what is shown, how it was got).
+    """A chart: `key` (its name in the page and in the files saved), `title`, `caption` (HTML: what is shown, how it was
+    got).
 
-    Arrays are put in once by name; traces refer to them with ref(), the table behind the CSV button by its headers.
-    """
+    Arrays are put in once by name; traces refer to them with ref(), the table behind the CSV button by its headers. """
 
     def __init__(self, key, title, caption, height=420):
         self.key = key
@@ -63,8 +71,16 @@ def points(x, y, name, colour, symbol, size=5.0, hover="%{x:.5g}, %{y:.4g}", **m
     """A trace of open markers."""
     marker = {"symbol": symbol, "size": size, "color": colour, "line": {"width": 1, "color": colour}}
     return dict(
-        {"type": "scatter", "mode": "markers", "x": x, "y": y, "name": name, "marker": marker, "hovertemplate": hover + "<extra></extra>"},
-        **more
+        {
+            "type": "scatter",
+            "mode": "markers",
+            "x": x,
+            "y": y,
+            "name": name,
+            "marker": marker,
+            "hovertemplate": hover + "<extra></extra>",
+        },
+        **more,
     )
 
 
@@ -80,5 +96,5 @@ def line(x, y, name, colour, dash="solid", width=1.5, hover="%{x:.5g}, %{y:.4g}"
             "line": {"color": colour, "dash": dash, "width": width},
             "hovertemplate": hover + "<extra></extra>",
         },
-        **more
+        **more,
     )

@@ -20,26 +20,49 @@ class Refused(Exception):
 def parse(arguments):
     parser = argparse.ArgumentParser(
         prog=NAME,
-        description="Writes one self-contained HTML page about a recorded run: configuration and integrity, impulse response, period map, "
-        "stroboscopic diagram, histograms, time histories, spectra and, for a random drive, frequency-response functions. "
-        "It opens in any browser of today, without network.",
+        description=(
+            "Writes one self-contained HTML page about a recorded run: configuration and integrity, impulse response,"
+            " period map, stroboscopic diagram, histograms, time histories, spectra and, for a random drive,"
+            " frequency-response functions. It opens in any browser of today, without network."
+        ),
     )
     parser.add_argument("bags", metavar="BAG", nargs="+", help="one bag, or all of a split one")
-    parser.add_argument("--out", metavar="HTML", required=True, help="the page to write; one that is there is replaced when the new one is complete")
     parser.add_argument(
-        "--with", dest="other", metavar="BAG", nargs="+", help="another run, such as the sweep back, whose responses are drawn along"
+        "--out",
+        metavar="HTML",
+        required=True,
+        help="the page to write; one that is there is replaced when the new one is complete",
     )
-    parser.add_argument("--namespace", metavar="NS", default="", help="the run to take from a recording of several, such as /rig1")
-    parser.add_argument("--excitation", metavar="TOPIC", default="", help="the topic of the excitation, where several are recorded")
+    parser.add_argument(
+        "--with",
+        dest="other",
+        metavar="BAG",
+        nargs="+",
+        help="another run, such as the sweep back, whose responses are drawn along",
+    )
+    parser.add_argument(
+        "--namespace", metavar="NS", default="", help="the run to take from a recording of several, such as /rig1"
+    )
+    parser.add_argument(
+        "--excitation", metavar="TOPIC", default="", help="the topic of the excitation, where several are recorded"
+    )
     parser.add_argument(
         "--step",
         metavar="STEP",
-        help="the step shown first: its number, from 1 on, or omega* with a decimal point (default: the one with the greatest impulse)",
+        help=(
+            "the step shown first: its number, from 1 on, or omega* with a decimal point (default: the one with the"
+            " greatest impulse)"
+        ),
     )
     parser.add_argument(
-        "--resolution", metavar="HZ", type=float, help="spacing of the lines of frequency-response functions (default: by the damping; stated in the page)"
+        "--resolution",
+        metavar="HZ",
+        type=float,
+        help="spacing of the lines of frequency-response functions (default: by the damping; stated in the page)",
     )
-    parser.add_argument("--no-replay", dest="replay", action="store_false", help="do not recompute the recording to check it")
+    parser.add_argument(
+        "--no-replay", dest="replay", action="store_false", help="do not recompute the recording to check it"
+    )
     return parser.parse_args(arguments)
 
 
@@ -76,7 +99,9 @@ def make(options):
     suffix = ", first run" if options.other else ""
     read = [runs.read(options.bags, options.namespace, options.excitation, options.replay, suffix, stage)]
     if options.other:
-        read.append(runs.read(options.other, options.namespace, options.excitation, options.replay, ", second run", stage))
+        read.append(
+            runs.read(options.other, options.namespace, options.excitation, options.replay, ", second run", stage)
+        )
     text = document.make(read, options, stage)
     write(options.out, text)
     stage("written to %s, %.1f MB" % (options.out, os.path.getsize(options.out) / 1e6))

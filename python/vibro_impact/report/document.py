@@ -33,7 +33,11 @@ def utc(stamp):
 def drive_words(run):
     if run.stepped:
         frequencies = [segment.frequency for segment in run.segments]
-        return "%d steps of constant frequency, %.4g to %.4g Hz" % (len(frequencies), min(frequencies), max(frequencies))
+        return "%d steps of constant frequency, %.4g to %.4g Hz" % (
+            len(frequencies),
+            min(frequencies),
+            max(frequencies),
+        )
     if runs.is_random(run):
         return "random: about %d lines share the power of a segment of 4096 samples" % round(run.drive_lines)
     if run.drive_lines is None:
@@ -47,7 +51,11 @@ def counts(run):
     return [
         ("bags", " ".join(os.path.basename(bag) for bag in run.bags)),
         ("first sample", "%s (number %d)" % (utc(recording.start_stamp), recording.first)),
-        ("length", "%.6g s: %d samples at %.6g Hz" % (len(recording.gap) * recording.sample_period, len(recording.gap), 1.0 / recording.sample_period)),
+        (
+            "length",
+            "%.6g s: %d samples at %.6g Hz"
+            % (len(recording.gap) * recording.sample_period, len(recording.gap), 1.0 / recording.sample_period),
+        ),
         ("drive", drive_words(run)),
         ("impacts", "%d, of which %d cut short" % (len(impacts), int(np.count_nonzero(impacts["cut_short"])))),
     ]
@@ -60,18 +68,27 @@ def replay_verdict(run):
         return "open", "Not compared. " + run.replay_error
     if report.difference:
         found = report.difference
-        return "bad", "Different: topic %s, %s: %s: recorded %s, recomputed %s. Before it %d samples and %d impacts are identical." % (
-            found.topic,
-            found.place,
-            found.field,
-            found.recorded,
-            found.recomputed,
+        return (
+            "bad",
+            "Different: topic %s, %s: %s: recorded %s, recomputed %s. Before it %d samples and %d impacts are"
+            " identical."
+            % (
+                found.topic,
+                found.place,
+                found.field,
+                found.recorded,
+                found.recomputed,
+                report.samples,
+                report.impacts,
+            ),
+        )
+    words = (
+        "%d samples of gap and contact force and %d impacts, recomputed from the excitation and the model recorded with"
+        " them, bit for bit."
+        % (
             report.samples,
             report.impacts,
         )
-    words = "%d samples of gap and contact force and %d impacts, recomputed from the excitation and the model recorded with them, bit for bit." % (
-        report.samples,
-        report.impacts,
     )
     if report.losses or report.impacts_not_compared:
         return "open", "Identical where compared: " + words
@@ -101,7 +118,9 @@ def integrity(page, run):
         if len(rows) > LOSSES_SHOWN:
             page.put("<p>And %d more.</p>" % (len(rows) - LOSSES_SHOWN))
     if run.left_out:
-        rows = [("%.4f" % omega_star, int(first), int(last), reason) for omega_star, first, last, reason in run.left_out]
+        rows = [
+            ("%.4f" % omega_star, int(first), int(last), reason) for omega_star, first, last, reason in run.left_out
+        ]
         page.put("<h3>Steps left out</h3>" + table(rows[:LOSSES_SHOWN], ("\u03c9*", "from sample", "to before", "why")))
     starts = [(int(sample), cause, reason) for sample, cause, reason in recording.starts]
     if starts:
@@ -161,7 +180,10 @@ def chosen_step(run, wanted):
     except ValueError:
         raise Refused("--step: '%s' is neither the number of a step nor omega*" % wanted)
     if not run.stepped:
-        raise Refused("--step: %s is an omega*, but the drive has no steps; allowed is a number from 1 to %d" % (wanted, len(run.segments)))
+        raise Refused(
+            "--step: %s is an omega*, but the drive has no steps; allowed is a number from 1 to %d"
+            % (wanted, len(run.segments))
+        )
     differences = [abs(segment.omega_star - omega_star) for segment in run.segments]
     nearest = int(np.argmin(differences))
     if not differences[nearest] <= 0.05 * max(abs(omega_star), 0.1):
@@ -179,7 +201,10 @@ def responses(page, read):
         return
     stepped = [each for each in read if each.stepped]
     if len(stepped) < len(read):
-        page.put("<p class='left-out'>The second run is left out of the responses: %s.</p>" % html.escape(read[1].without_steps))
+        page.put(
+            "<p class='left-out'>The second run is left out of the responses: %s.</p>"
+            % html.escape(read[1].without_steps)
+        )
     if any(len(impacts) for each in stepped for impacts in each.captured):
         page.section("impulse", "Impulse response")
         page.chart(response_charts.impulse_response(stepped))
@@ -219,24 +244,32 @@ STEP_CHARTS = (
     (
         "step_time",
         "Gap and contact force",
-        "Lines: every sample of the end of the %(step)s. Shaded: least and greatest value in each of many parts of the whole of it. "
-        "Drag over a stretch to zoom, double-click for all; a negative gap is a compressed spring. The CSV holds every sample of the end.",
+        (
+            "Lines: every sample of the end of the %(step)s. Shaded: least and greatest value in each of many parts of"
+            " the whole of it. Drag over a stretch to zoom, double-click for all; a negative gap is a compressed"
+            " spring. The CSV holds every sample of the end."
+        ),
         560,
     ),
     (
         "step_portrait",
         "Phase portrait",
-        "Gap velocity over gap, over the stretch that the chart above shows at first. The velocity is not recorded: it is the central "
-        "difference of the recorded gap over two sample periods, which takes sin(x)/x of a frequency f, x = 2\u03c0 f times the period. "
-        "Dashed: contact.",
+        (
+            "Gap velocity over gap, over the stretch that the chart above shows at first. The velocity is not recorded:"
+            " it is the central difference of the recorded gap over two sample periods, which takes sin(x)/x of a"
+            " frequency f, x = 2\u03c0 f times the period. Dashed: contact."
+        ),
         480,
     ),
     (
         "step_spectrum",
         "Spectrum",
-        "Amplitude spectra of the second half of the %(step)s, at most 131 072 samples (whole drive cycles of it where there is a drive), with a "
-        "Hann window: a sine of amplitude A has A at its line. Where lines are more than the chart can hold, each value is the greatest "
-        "of its neighbours. Dotted: frequency of the drive.",
+        (
+            "Amplitude spectra of the second half of the %(step)s, at most 131 072 samples (whole drive cycles of it"
+            " where there is a drive), with a Hann window: a sine of amplitude A has A at its line. Where lines are"
+            " more than the chart can hold, each value is the greatest of its neighbours. Dotted: frequency of the"
+            " drive."
+        ),
         480,
     ),
 )
@@ -257,19 +290,28 @@ def steps(page, run, options):
         page.put(figure(key, title, caption % {"step": "step" if run.stepped else "part"}, height))
     held = step_data.embedded(run.segments, chosen)
     if len(held) < len(run.segments):
-        page.put("<p class='left-out'>The page holds %d of the %d steps, evenly chosen.</p>" % (len(held), len(run.segments)))
+        page.put(
+            "<p class='left-out'>The page holds %d of the %d steps, evenly chosen.</p>" % (len(held), len(run.segments))
+        )
     return chosen, held
 
 
 def waterfalls(page, run):
     page.section("waterfall", "Waterfall")
     made = [
-        spectral_charts.waterfall(run.recording.gap, run.recording.sample_period, run.segments if run.stepped else [], "gap", "gap", "m"),
+        spectral_charts.waterfall(
+            run.recording.gap, run.recording.sample_period, run.segments if run.stepped else [], "gap", "gap", "m"
+        ),
     ]
     if touched(run):
         made.append(
             spectral_charts.waterfall(
-                run.recording.contact_force, run.recording.sample_period, run.segments if run.stepped else [], "force", "contact force", "N"
+                run.recording.contact_force,
+                run.recording.sample_period,
+                run.segments if run.stepped else [],
+                "force",
+                "contact force",
+                "N",
             )
         )
     shown = [chart for chart in made if chart]
@@ -299,19 +341,25 @@ def frequency_responses(page, run, resolution):
         return
     page.section("frf", title)
     page.put(
-        "<p>Ratios of the phasors of a response and of the base acceleration that excites it (ISO 7626-1). The excitation is an acceleration, "
-        "not a force: the gap per base acceleration, in s\u00b2, stands for the receptance (dynamic compliance), as the base acts on every mode "
-        "like the force \u2212\u0393<sub>n</sub> <i>a</i>.</p>"
+        "<p>Ratios of the phasors of a response and of the base acceleration that excites it (ISO 7626-1). The"
+        " excitation is an acceleration, not a force: the gap per base acceleration, in s\u00b2, stands for the"
+        " receptance (dynamic compliance), as the base acts on every mode like the force \u2212\u0393<sub>n</sub>"
+        " <i>a</i>.</p>"
     )
     page.chart(spectral_charts.excitation_density(gap))
     state = models.linear_state(recording, touched(run), pressed(run))
     closed_form = models.receptance(recording, state, gap.frequency) if state else None
     page.chart(spectral_charts.frequency_response(gap, "gap", "gap", "m", closed_form, STATE_WORDS.get(state, "")))
     if touched(run):
-        force = spectra.frequency_response(recording.acceleration, recording.contact_force, recording.sample_period, length)
+        force = spectra.frequency_response(
+            recording.acceleration, recording.contact_force, recording.sample_period, length
+        )
         page.chart(spectral_charts.frequency_response(force, "force", "contact force", "N"))
         if not state:
-            page.put("<p>No closed form is drawn along: a contact that opens and closes is not linear, which the coherence shows.</p>")
+            page.put(
+                "<p>No closed form is drawn along: a contact that opens and closes is not linear, which the coherence"
+                " shows.</p>"
+            )
     else:
         page.put("<p class='left-out'>That of the contact force is left out: the contact is never reached.</p>")
 
@@ -322,7 +370,10 @@ def make(read, options, stage):
     recording = run.recording
     names = " ".join(os.path.basename(bag) for bag in run.bags)
     page = Page("Vibro-impact run: " + names)
-    page.lead("Made from the recording alone. Charts can be zoomed with the mouse or, in focus, with the keys plus, minus, arrows and 0.")
+    page.lead(
+        "Made from the recording alone. Charts can be zoomed with the mouse or, in focus, with the keys plus, minus,"
+        " arrows and 0."
+    )
     page.section("run", "Run")
     page.put(table(counts(run)))
     for other in read[1:]:
@@ -350,7 +401,10 @@ def make(read, options, stage):
     factor_force, unit_force = prefix(greatest(recording.contact_force))
     page.data.update(
         sample_period=recording.sample_period,
-        units={"gap": {"factor": factor_gap, "text": unit_gap + "m"}, "force": {"factor": factor_force, "text": unit_force + "N"}},
+        units={
+            "gap": {"factor": factor_gap, "text": unit_gap + "m"},
+            "force": {"factor": factor_force, "text": unit_force + "N"},
+        },
         part="step" if run.stepped else "part",
         chosen=chosen,
         segments=[
@@ -365,8 +419,9 @@ def make(read, options, stage):
         ],
     )
     footer = (
-        "Charts by plotly.js %s (MIT licence, &#169; Plotly, Inc.), which is inside this page. The page makes no request. "
-        "Definitions: doc/report.md of the package vibro_impact." % plotly_version()
+        "Charts by plotly.js %s (MIT licence, &#169; Plotly, Inc.), which is inside this page. The page makes no"
+        " request. Definitions: doc/report.md of the package vibro_impact."
+        % plotly_version()
     )
     rest = LARGEST_PAGE - len(page.render(footer))
     size = step_data.sizes(len(held), rest)

@@ -72,8 +72,9 @@ def over_time(recording):
     chart = charts.Chart(
         "overview",
         "The whole recording",
-        "Least and greatest value in each of %d equal parts of the recording, so that no peak is missed. Where nothing is drawn, "
-        "samples are lost." % len(starts),
+        "Least and greatest value in each of %d equal parts of the recording, so that no peak is missed. Where nothing"
+        " is drawn, samples are lost."
+        % len(starts),
         560,
     )
     chart.column("from_s", "time", starts * recording.sample_period)
@@ -87,7 +88,11 @@ def over_time(recording):
     for name, values, unit, header, words, colour, axis in rows:
         low = np.fmin.reduceat(values, starts)
         high = np.fmax.reduceat(values, starts)
-        factor, scale = (1.0, "") if name == "acceleration" else prefix(float(np.nanmax(np.abs((low, high))))) if np.isfinite(high).any() else (1.0, "")
+        factor, scale = (
+            (1.0, "")
+            if name == "acceleration"
+            else prefix(float(np.nanmax(np.abs((low, high))))) if np.isfinite(high).any() else (1.0, "")
+        )
         chart.column("least_%s_%s" % (name, header), name + "_low", low, "f4")
         chart.column("greatest_%s_%s" % (name, header), name + "_high", high, "f4")
         for part, fill in (("_low", "none"), ("_high", "tonexty")):

@@ -19,19 +19,21 @@ def bandwidth(recording):
 
 
 def linear_state(recording, touched, pressed):
-    """The linear state, "free" or "contact", in which the whole recording is; "" where it is in both or its contact changes."""
+    """The linear state, "free" or "contact", in which the whole recording is; "" where it is in both or its contact
+    changes."""
     if len(recording.models) != 1 or (touched and not pressed):
         return ""
     return "contact" if pressed else "free"
 
 
 def receptance(recording, state, frequency):
-    """Gap per base acceleration in a linear state (complex, s^2) at `frequency` in Hz, for a drive that is linear between its
-    samples, as the simulator takes it.
+    """Gap per base acceleration in a linear state (complex, s^2) at `frequency` in Hz, for a drive that is linear
+    between its samples, as the simulator takes it.
 
-    The closed form is H = -sum_n b_n Gamma_n/(omega_n^2 - omega^2 + 2 i zeta_n omega_n omega), from the modal equations of
-    doc/model.md, section 3. Joined by straight lines, samples at a frequency f are a drive that has sinc^2(f T) of their amplitude
-    there, and an image at every f + k/T, of which the samples of the response show the answer at f again."""
+    The closed form is H = -sum_n b_n Gamma_n/(omega_n^2 - omega^2 + 2 i zeta_n omega_n omega), from the modal equations
+    of doc/model.md, section 3. Joined by straight lines, samples at a frequency f are a drive that has sinc^2(f T) of
+    their amplitude there, and an image at every f + k/T, of which the samples of the response show the answer at f
+    again."""
     model = vibro_impact.Model(recording.models[0].configuration)
     period = recording.sample_period
     total = np.zeros(len(frequency), dtype=complex)

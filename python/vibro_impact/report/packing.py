@@ -8,8 +8,8 @@ import numpy as np
 
 
 def deflate(raw, width):
-    """Base64 text of the bytes of numbers `width` bytes wide. The bytes of equal significance lie side by side, which compresses
-    better: neighbours differ in the low ones only."""
+    """Base64 text of the bytes of numbers `width` bytes wide. The bytes of equal significance lie side by side, which
+    compresses better: neighbours differ in the low ones only."""
     planes = np.frombuffer(raw, dtype=np.uint8).reshape(-1, width).T
     return base64.b64encode(zlib.compress(planes.tobytes(), 6)).decode("ascii")
 
@@ -21,8 +21,8 @@ def packed(values, kind="f4"):
 
 
 def quantised(values, kind="u2"):
-    """The same by steps of the range's 65 534th (u2) or 254th part (u1): number = b + s times what is stored, the greatest of
-    which stands for a number that is not finite."""
+    """The same by steps of the range's 65 534th (u2) or 254th part (u1): number = b + s times what is stored, the
+    greatest of which stands for a number that is not finite."""
     values = np.asarray(values, dtype=float)
     most = np.iinfo(kind).max - 1
     finite = np.isfinite(values)

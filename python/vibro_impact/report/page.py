@@ -27,7 +27,9 @@ def table(rows, header=()):
     """Rows of text; numbers (int, float) stand to the right."""
     lines = ["<table>"]
     if header:
-        lines.append("<thead><tr>%s</tr></thead>" % "".join("<th scope='col'>%s</th>" % html.escape(cell) for cell in header))
+        lines.append(
+            "<thead><tr>%s</tr></thead>" % "".join("<th scope='col'>%s</th>" % html.escape(cell) for cell in header)
+        )
     for row in rows:
         cells = []
         for number, cell in enumerate(row):
@@ -85,7 +87,8 @@ class Page:
 
     def render(self, footer):
         contents = "".join(
-            "<li%s><a href='#%s'>%s</a></li>" % (" class='absent'" if absent else "", key, html.escape(title) + (" (left out)" if absent else ""))
+            "<li%s><a href='#%s'>%s</a></li>"
+            % (" class='absent'" if absent else "", key, html.escape(title) + (" (left out)" if absent else ""))
             for key, title, absent in self.contents
         )
         parts = {

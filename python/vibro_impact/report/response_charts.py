@@ -29,7 +29,9 @@ def branches(runs):
             words, colour, marker = BRANCHES[direction]
             if colour in taken:
                 colour, marker = next(
-                    style for style in ((charts.GREEN, "square-open"), (charts.PURPLE, "diamond-open")) if style[0] not in taken
+                    style
+                    for style in ((charts.GREEN, "square-open"), (charts.PURPLE, "diamond-open"))
+                    if style[0] not in taken
                 )
             taken.add(colour)
             found.append((number, direction, "drive " + words + run.suffix, colour, marker))
@@ -44,7 +46,8 @@ def distinct(x, y):
 
 
 def scatter(chart, runs, x, y, factor, hover, size=6.0):
-    """A trace for each branch of the points x[run], y[run] (lists of arrays, one a segment); the table has every point."""
+    """A trace for each branch of the points x[run], y[run] (lists of arrays, one a segment); the table has every
+    point."""
     all_x, all_y, all_run, all_direction = [], [], [], []
     for number, direction, label, colour, marker in branches(runs):
         segments = [i for i, segment in enumerate(runs[number].segments) if segment.direction == direction]
@@ -66,7 +69,14 @@ def scatter(chart, runs, x, y, factor, hover, size=6.0):
             more["customdata"] = charts.ref(names[2])
         chart.traces.append(
             charts.points(
-                charts.ref(names[0]), charts.ref(names[1], factor), label, colour, marker, size=size, hover=hover, **more
+                charts.ref(names[0]),
+                charts.ref(names[1], factor),
+                label,
+                colour,
+                marker,
+                size=size,
+                hover=hover,
+                **more,
             )
         )
     # A single branch has its legend, too: it says the direction.
@@ -83,10 +93,12 @@ def impulse_response(runs):
     chart = charts.Chart(
         "impulse_response",
         "Every captured impact",
-        "Dimensionless impulse <i>I</i>* = <i>I</i> \u03c9<sub>11</sub>/(<i>k</i><sub>b</sub> <i>L</i><sub>1</sub>) of every captured impact: "
-        "the last fifteen of each step of the drive. The direction is that in which the frequency of the drive was stepped. "
-        "A click on a point chooses its step <a href='#step'>below</a>. Points that would cover each other are drawn once; the "
-        "table has them all.",
+        (
+            "Dimensionless impulse <i>I</i>* = <i>I</i> \u03c9<sub>11</sub>/(<i>k</i><sub>b</sub> <i>L</i><sub>1</sub>)"
+            " of every captured impact: the last fifteen of each step of the drive. The direction is that in which the"
+            " frequency of the drive was stepped. A click on a point chooses its step <a href='#step'>below</a>. Points"
+            " that would cover each other are drawn once; the table has them all."
+        ),
         480,
     )
     star = [[impacts["impulse"] * run.star for impacts in run.captured] for run in runs]
@@ -99,14 +111,24 @@ def impulse_response(runs):
 
     def collect(column):
         return np.concatenate(
-            [values for number, d in order for values, s in zip(per_impact(runs, column)[number], runs[number].segments) if s.direction == d]
+            [
+                values
+                for number, d in order
+                for values, s in zip(per_impact(runs, column)[number], runs[number].segments)
+                if s.direction == d
+            ]
         )
 
     chart.column("run", "run", run, "i4")
     chart.column("direction", "direction", direction, "i4")
     chart.column("omega_star", "omega_star", x)
     chart.column("impulse_star", "impulse_star", y)
-    for header, column in (("onset_s", "onset_s"), ("duration_s", "duration_s"), ("impulse_N_s", "impulse"), ("peak_force_N", "peak_force")):
+    for header, column in (
+        ("onset_s", "onset_s"),
+        ("duration_s", "duration_s"),
+        ("impulse_N_s", "impulse"),
+        ("peak_force_N", "peak_force"),
+    ):
         chart.column(header, column, collect(column))
     chart.axes(DRIVE, "dimensionless impulse <i>I</i>* (1)", y_rangemode="tozero")
     chart.logarithmic = "yaxis"
@@ -117,8 +139,10 @@ def period_map(runs):
     chart = charts.Chart(
         "period_map",
         "Period of the response",
-        "Least number of drive cycles after which the impacts repeat, to 10<sup>-4</sup> of the greatest impulse and of a cycle; "
-        "\u201cnone\u201d: no period up to 16 was found.",
+        (
+            "Least number of drive cycles after which the impacts repeat, to 10<sup>-4</sup> of the greatest impulse"
+            " and of a cycle; \u201cnone\u201d: no period up to 16 was found."
+        ),
         360,
     )
     x = [[np.array([segment.omega_star]) for segment in run.segments] for run in runs]
@@ -147,16 +171,21 @@ def stroboscopic(runs):
     chart = charts.Chart(
         "stroboscopic",
         "Gap at equal drive phase",
-        "The gap at equal phase of the drive: where the base acceleration rises through its mean, over the last 64 drive cycles "
-        "of each step (at most half of it), between samples by the cubic through four of them. A response that repeats every "
-        "<i>p</i> cycles gives <i>p</i> points, one without a period a column of them. Points that would cover each other are "
-        "drawn once.",
+        (
+            "The gap at equal phase of the drive: where the base acceleration rises through its mean, over the last 64"
+            " drive cycles of each step (at most half of it), between samples by the cubic through four of them. A"
+            " response that repeats every <i>p</i> cycles gives <i>p</i> points, one without a period a column of them."
+            " Points that would cover each other are drawn once."
+        ),
         480,
     )
     where = [
-        [np.full(len(part), segment.omega_star) for part, segment in zip(run_values, run.segments)] for run_values, run in zip(values, runs)
+        [np.full(len(part), segment.omega_star) for part, segment in zip(run_values, run.segments)]
+        for run_values, run in zip(values, runs)
     ]
-    run, direction, x, y = scatter(chart, runs, where, values, factor, "\u03c9* %{x:.4f}, gap %{y:.4g} " + unit + "m", size=5.0)
+    run, direction, x, y = scatter(
+        chart, runs, where, values, factor, "\u03c9* %{x:.4f}, gap %{y:.4g} " + unit + "m", size=5.0
+    )
     chart.column("run", "run", run, "i4")
     chart.column("direction", "direction", direction, "i4")
     chart.column("omega_star", "omega_star", x)

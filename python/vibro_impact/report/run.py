@@ -8,13 +8,17 @@ import vibro_impact
 from vibro_impact.report import segments as parts
 from vibro_impact.report import spectra
 
-# Lines that share the power of a random drive, at least, and of a sine or a slow sweep, at most, in a segment of 4096 samples.
+# Lines that share the power of a random drive, at least, and of a sine or a slow sweep, at most, in a segment of 4096
+# samples.
 RANDOM_LINES = 16.0
 
-# recording; segments; captured: for each segment the impacts that made its response; star: I* over an impulse in N s; stepped: whether the segments are steps of
-# the drive; without_steps: why they are not; left_out: steps that were not evaluated; replay, replay_error: what came of the
-# replay check; drive_lines: how many spectral lines share the drive's power; suffix: how labels call the run
-Run = namedtuple("Run", "bags recording segments captured star stepped without_steps left_out replay replay_error drive_lines suffix")
+# recording; segments; captured: for each segment the impacts that made its response; star: I* over an impulse in N s;
+# stepped: whether the segments are steps of the drive; without_steps: why they are not; left_out: steps that were not
+# evaluated; replay, replay_error: what came of the replay check; drive_lines: how many spectral lines share the drive's
+# power; suffix: how labels call the run
+Run = namedtuple(
+    "Run", "bags recording segments captured star stepped without_steps left_out replay replay_error drive_lines suffix"
+)
 
 
 def is_random(run):
@@ -22,7 +26,8 @@ def is_random(run):
 
 
 def captured_of(responses, impacts, first_time):
-    """The captured impacts of each response, their onset counted from `first_time` in s: `impacts` has them one after the other."""
+    """The captured impacts of each response, their onset counted from `first_time` in s: `impacts` has them one after
+    the other."""
     impacts["onset_s"] -= first_time
     ends = np.cumsum(responses["impacts"]).astype(int)
     return [impacts[end - int(row["impacts"]) : end] for end, row in zip(ends, responses)]
@@ -60,5 +65,16 @@ def read(bags, namespace, excitation, replay, suffix, stage):
         except vibro_impact.Error as error:
             replay_error = str(error)
     return Run(
-        bags, recording, segments, captured, star, not without_steps, without_steps, left_out, report, replay_error, drive_lines, suffix
+        bags,
+        recording,
+        segments,
+        captured,
+        star,
+        not without_steps,
+        without_steps,
+        left_out,
+        report,
+        replay_error,
+        drive_lines,
+        suffix,
     )

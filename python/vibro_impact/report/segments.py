@@ -1,12 +1,13 @@
-"""The stretches of a recording among which a reader chooses: the steps of its drive, or equal parts where it has none."""
+"""The stretches of a recording among which a reader chooses: the steps of its drive, or equal parts where it has
+none."""
 
 import math
 from collections import namedtuple
 
 import numpy as np
 
-# first, last: samples counted from the recording's first one, the last one not included; frequency in Hz, omega_star and
-# acceleration are None where there is no step; direction: 1 up, -1 down, 0 unknown; period in cycles
+# first, last: samples counted from the recording's first one, the last one not included; frequency in Hz, omega_star
+# and acceleration are None where there is no step; direction: 1 up, -1 down, 0 unknown; period in cycles
 Segment = namedtuple("Segment", "first last frequency omega_star acceleration direction period")
 
 # Drive cycles at the end of a step that the stroboscopic diagram shows.
@@ -15,8 +16,8 @@ EQUAL_PARTS = 40
 
 
 def directions(frequencies):
-    """For each step of a drive 1 where its frequency is higher than that of the step before, -1 where it is lower; what stays is
-    as what came before it, and the first step is as the second; 0 where nothing ever changes."""
+    """For each step of a drive 1 where its frequency is higher than that of the step before, -1 where it is lower; what
+    stays is as what came before it, and the first step is as the second; 0 where nothing ever changes."""
     signs = np.sign(np.diff(np.asarray(frequencies, dtype=float)))
     result = np.zeros(len(frequencies), dtype=int)
     known = 0
@@ -60,8 +61,8 @@ def equal_parts(recording):
 
 
 def drive_phase(acceleration, sample_period, frequency):
-    """Phase in rad at the first sample of `acceleration`, of a sin(2 pi f t + phase) fitted to it with its mean (three-parameter
-    fit of IEEE Std 1057)."""
+    """Phase in rad at the first sample of `acceleration`, of a sin(2 pi f t + phase) fitted to it with its mean
+    (three-parameter fit of IEEE Std 1057)."""
     angle = 2.0 * math.pi * frequency * sample_period * np.arange(len(acceleration))
     columns = np.column_stack((np.sin(angle), np.cos(angle), np.ones(len(angle))))
     sine, cosine, _ = np.linalg.lstsq(columns, acceleration, rcond=None)[0]
@@ -82,8 +83,9 @@ def interpolate(samples, position):
 
 
 def stroboscopic_points(segment, recording):
-    """The gap, in m, at the instants at which the base acceleration rises through its mean, over the last cycles of a step, at
-    most STROBOSCOPIC_CYCLES and half of the step; half a cycle at its very end is left out, where the next may have begun."""
+    """The gap, in m, at the instants at which the base acceleration rises through its mean, over the last cycles of a
+    step, at most STROBOSCOPIC_CYCLES and half of the step; half a cycle at its very end is left out, where the next may
+    have begun. """
     per_cycle = 1.0 / (segment.frequency * recording.sample_period)
     cycles = (segment.last - segment.first) / per_cycle
     kept = min(STROBOSCOPIC_CYCLES, int(cycles / 2.0))

@@ -13,7 +13,8 @@ BATCH_SAMPLES = 1 << 21
 # frequency in Hz; auto_excitation, auto_response: one-sided spectral densities; h1, h2: complex; coherence in 0 to 1;
 # segments: how many were averaged; averages: how many independent ones these are worth; length in samples
 FrequencyResponse = namedtuple(
-    "FrequencyResponse", "frequency auto_excitation auto_response h1 h2 coherence segments averages length resolution sample_period"
+    "FrequencyResponse",
+    "frequency auto_excitation auto_response h1 h2 coherence segments averages length resolution sample_period",
 )
 
 
@@ -23,9 +24,9 @@ def hann(length):
 
 
 def independent_averages(segments, window):
-    """What `segments` that overlap by half are worth as independent averages (P. D. Welch, IEEE Trans. Audio Electroacoust. 15
-    (1967) 70): K/(1 + 2 (K - 1)/K rho), rho the squared correlation of the window with itself, half a segment later; 1/36
-    for a Hann window."""
+    """What `segments` that overlap by half are worth as independent averages (P. D. Welch, IEEE Trans. Audio
+    Electroacoust. 15 (1967) 70): K/(1 + 2 (K - 1)/K rho), rho the squared correlation of the window with itself, half a
+    segment later; 1/36 for a Hann window."""
     half = len(window) // 2
     correlation = float(np.dot(window[:-half], window[half:]) / np.dot(window, window)) ** 2
     return segments / (1.0 + 2.0 * correlation * (segments - 1) / segments)
@@ -42,9 +43,9 @@ def whole_segments(signals, length):
 
 
 def frequency_response(excitation, response, sample_period, length):
-    """Estimates H1 = G_xy/G_xx, H2 = G_yy/G_yx and the coherence |G_xy|^2/(G_xx G_yy) (Bendat and Piersol, Random Data, 4th
-    ed., ch. 6) from segments of `length` samples (even) with a Hann window, half overlapping, each without its mean. Segments
-    with a lost sample (NaN) are left out. None where no segment is whole."""
+    """Estimates H1 = G_xy/G_xx, H2 = G_yy/G_yx and the coherence |G_xy|^2/(G_xx G_yy) (Bendat and Piersol, Random Data,
+    4th ed., ch. 6) from segments of `length` samples (even) with a Hann window, half overlapping, each without its
+    mean. Segments with a lost sample (NaN) are left out. None where no segment is whole."""
     window = hann(length)
     starts = whole_segments((excitation, response), length)
     if len(starts) == 0:
@@ -87,17 +88,17 @@ def frequency_response(excitation, response, sample_period, length):
 
 
 def random_error(coherence, averages):
-    """Normalised random error (standard deviation over value) of |H1|, and by its size in rad of the phase: Bendat and Piersol,
-    table 9.6: sqrt(1 - gamma^2)/(|gamma| sqrt(2 n_d))."""
+    """Normalised random error (standard deviation over value) of |H1|, and by its size in rad of the phase: Bendat and
+    Piersol, table 9.6: sqrt(1 - gamma^2)/(|gamma| sqrt(2 n_d))."""
     squared = np.clip(coherence, 0.0, 1.0)
     with np.errstate(divide="ignore"):
         return np.sqrt(1.0 - squared) / np.sqrt(2.0 * averages * squared)
 
 
 def segment_length(samples, sample_period, bandwidth):
-    """Samples of a segment, a power of two: a resolution of an eighth of `bandwidth` (Hz, the half-power bandwidth of the
-    sharpest resonance; Bendat and Piersol's bias (B_e/B_r)^2/3 is 0.5 % there), less where fewer than 32 averages would be
-    left."""
+    """Samples of a segment, a power of two: a resolution of an eighth of `bandwidth` (Hz, the half-power bandwidth of
+    the sharpest resonance; Bendat and Piersol's bias (B_e/B_r)^2/3 is 0.5 % there), less where fewer than 32 averages
+    would be left."""
     wanted = 8.0 / (bandwidth * sample_period)
     most = samples / 16.5
     return 1 << max(6, int(np.floor(np.log2(min(2.0 ** np.ceil(np.log2(wanted)), most)))))
@@ -118,8 +119,9 @@ def largest_of_each(values, groups):
 
 
 def spectrogram(signal, sample_period, columns, length):
-    """(time, frequency, amplitude[frequency, time]): root mean square, over each of at most `columns` stretches of the signal, of
-    the amplitude spectra of its segments of `length` samples with a Hann window; NaN where a stretch has no whole one."""
+    """(time, frequency, amplitude[frequency, time]): root mean square, over each of at most `columns` stretches of the
+    signal, of the amplitude spectra of its segments of `length` samples with a Hann window; NaN where a stretch has no
+    whole one. """
     window = hann(length)
     count = len(signal) // length
     # Half overlapping where the signal is short.
@@ -143,8 +145,9 @@ def spectrogram(signal, sample_period, columns, length):
 
 
 def spectral_lines(signal, length=4096):
-    """How many lines share the power of a segment of the signal, (sum P)^2/sum P^2, as the median over segments: two for a
-    sine, as many as the band has (by half of the chi-square scatter) for a random signal. None where there is no power."""
+    """How many lines share the power of a segment of the signal, (sum P)^2/sum P^2, as the median over segments: two
+    for a sine, as many as the band has (by half of the chi-square scatter) for a random signal. None where there is no
+    power. """
     length = min(length, len(signal) // 4)
     starts = whole_segments((signal,), length) if length >= 16 else ()
     if len(starts) == 0:

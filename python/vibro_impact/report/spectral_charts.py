@@ -45,8 +45,9 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
     chart = charts.Chart(
         "waterfall_" + quantity,
         "Waterfall of the " + words,
-        "Amplitude of the %s over time and frequency, in dB re 1 %s: root mean square of the amplitude spectra of %d samples (%.4g ms, "
-        "Hann window, %.4g Hz apart%s) in each column of %.4g s; levels down to %d dB below the greatest one.%s"
+        "Amplitude of the %s over time and frequency, in dB re 1 %s: root mean square of the amplitude spectra of %d"
+        " samples (%.4g ms, Hann window, %.4g Hz apart%s) in each column of %.4g s; levels down to %d dB below the"
+        " greatest one.%s"
         % (
             words,
             unit,
@@ -79,7 +80,14 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
         chart.put("drive_frequency", np.repeat([s.frequency for s in steps], 2))
         chart.traces.append(
             charts.line(
-                charts.ref("drive_time"), charts.ref("drive_frequency"), "drive", "#ffffff", "dash", 1.2, "drive: %{y:.5g} Hz", showlegend=False
+                charts.ref("drive_time"),
+                charts.ref("drive_frequency"),
+                "drive",
+                "#ffffff",
+                "dash",
+                1.2,
+                "drive: %{y:.5g} Hz",
+                showlegend=False,
             )
         )
     chart.extra["matrix"] = ["frequency_Hz", "frequency", "time", "level"]
@@ -90,7 +98,8 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
 
 
 def band(estimate):
-    """The lines in which there is a drive: within 60 dB of its greatest density, at most MOST_LINES from the lowest on."""
+    """The lines in which there is a drive: within 60 dB of its greatest density, at most MOST_LINES from the lowest
+    on."""
     density = estimate.auto_excitation
     driven = np.flatnonzero(density > 1e-6 * density.max())
     return slice(driven[0], min(driven[-1] + 1, driven[0] + MOST_LINES))
@@ -122,7 +131,8 @@ def excitation_density(estimate):
 
 
 def agreement(estimate, closed_form):
-    """(lines, greatest deviation relative, and in degrees) of H1 from the closed form where the coherence exceeds 0.99."""
+    """(lines, greatest deviation relative, and in degrees) of H1 from the closed form where the coherence exceeds
+    0.99."""
     shown = band(estimate)
     coherent = estimate.coherence[shown] > 0.99
     ratio = estimate.h1[shown][coherent] / closed_form[shown][coherent]
@@ -132,17 +142,19 @@ def agreement(estimate, closed_form):
 
 
 def frequency_response(estimate, quantity, words, unit, closed_form=None, closed_words=""):
-    """Magnitude, phase and coherence of a response per base acceleration; `closed_form`: what to draw along, at the lines of the
-    estimate."""
+    """Magnitude, phase and coherence of a response per base acceleration; `closed_form`: what to draw along, at the
+    lines of the estimate."""
     shown = band(estimate)
     frequency = estimate.frequency[shown]
     h1, h2, coherence = estimate.h1[shown], estimate.h2[shown], estimate.coherence[shown]
     error = spectra.random_error(coherence, estimate.averages)
     caption = (
-        "H<sub>1</sub> = G<sub>xy</sub>/G<sub>xx</sub>, H<sub>2</sub> = G<sub>yy</sub>/G<sub>yx</sub> and the coherence \u03b3\u00b2 of the %s (response y) and "
-        "the base acceleration (excitation x), by Welch's method: Hann window (ISO 18431-2), %d segments of %d samples overlapping by 50 %%, "
-        "worth %.1f independent averages, resolution %.4g Hz, each segment without its mean. Shaded: H<sub>1</sub> \u00b1 1.96 times its random "
-        "error, \u221a(1 \u2212 \u03b3\u00b2)/(|\u03b3| \u221a(2 <i>n</i><sub>d</sub>)), Bendat and Piersol, table 9.6. A response that lags has a negative phase (ISO 7626-1). "
+        "H<sub>1</sub> = G<sub>xy</sub>/G<sub>xx</sub>, H<sub>2</sub> = G<sub>yy</sub>/G<sub>yx</sub> and the coherence"
+        " \u03b3\u00b2 of the %s (response y) and the base acceleration (excitation x), by Welch's method: Hann window"
+        " (ISO 18431-2), %d segments of %d samples overlapping by 50 %%, worth %.1f independent averages, resolution"
+        " %.4g Hz, each segment without its mean. Shaded: H<sub>1</sub> \u00b1 1.96 times its random error, \u221a(1"
+        " \u2212 \u03b3\u00b2)/(|\u03b3| \u221a(2 <i>n</i><sub>d</sub>)), Bendat and Piersol, table 9.6. A response"
+        " that lags has a negative phase (ISO 7626-1). "
         % (words, estimate.segments, estimate.length, estimate.averages, estimate.resolution)
     )
     if frequency[-1] < estimate.frequency[-1] and len(frequency) == MOST_LINES:
@@ -155,16 +167,23 @@ def frequency_response(estimate, quantity, words, unit, closed_form=None, closed
         closed = closed_form[shown]
         lines, magnitude, angle = agreement(estimate, closed_form)
         chart.caption += (
-            "Dotted: the closed form of the linear run, %s, <i>H</i> = \u2212\u03a3 <i>b</i><sub>n</sub>\u0393<sub>n</sub>/(\u03c9<sub>n</sub>\u00b2 \u2212 \u03c9\u00b2 + 2i\u03b6\u03c9<sub>n</sub>\u03c9), "
-            "for a drive that is linear between its samples. " % closed_words
+            "Dotted: the closed form of the linear run, %s, <i>H</i> = \u2212\u03a3"
+            " <i>b</i><sub>n</sub>\u0393<sub>n</sub>/(\u03c9<sub>n</sub>\u00b2 \u2212 \u03c9\u00b2 +"
+            " 2i\u03b6\u03c9<sub>n</sub>\u03c9), for a drive that is linear between its samples. " % closed_words
         )
         if lines:
-            chart.caption += "Where the coherence exceeds 0.99, at %d lines, H<sub>1</sub> is within %.2g %% and %.2g\u00b0 of it." % (
-                lines,
-                100.0 * magnitude,
-                angle,
+            chart.caption += (
+                "Where the coherence exceeds 0.99, at %d lines, H<sub>1</sub> is within %.2g %% and %.2g\u00b0 of it."
+                % (
+                    lines,
+                    100.0 * magnitude,
+                    angle,
+                )
             )
-    estimates = [("h1", h1, "H<sub>1</sub>", charts.BLUE, "solid", 1.6), ("h2", h2, "H<sub>2</sub>", charts.VERMILION, "dash", 1.2)]
+    estimates = [
+        ("h1", h1, "H<sub>1</sub>", charts.BLUE, "solid", 1.6),
+        ("h2", h2, "H<sub>2</sub>", charts.VERMILION, "dash", 1.2),
+    ]
     if closed is not None:
         estimates.append(("closed_form", closed, "closed form", charts.BLACK, "dot", 1.8))
     spread = 1.96 * error * np.abs(h1)
@@ -207,12 +226,28 @@ def frequency_response(estimate, quantity, words, unit, closed_form=None, closed
     chart.column("random_error_of_h1", "random_error", error, "f4")
     chart.traces.append(
         charts.line(
-            charts.ref("frequency"), charts.ref("coherence"), "coherence", charts.GREEN, "solid", 1.2, "%{x:.5g} Hz: %{y:.5f}", showlegend=False
+            charts.ref("frequency"),
+            charts.ref("coherence"),
+            "coherence",
+            charts.GREEN,
+            "solid",
+            1.2,
+            "%{x:.5g} Hz: %{y:.5f}",
+            showlegend=False,
         )
     )
     chart.layout["xaxis"] = {"title": {"text": "frequency (Hz)"}, "type": "log", "anchor": "y"}
-    chart.layout["yaxis"] = {"title": {"text": "coherence \u03b3\u00b2 (1)"}, "domain": [0.0, 0.2], "range": [0.0, 1.05]}
-    chart.layout["yaxis2"] = {"title": {"text": "phase (\u00b0)"}, "domain": [0.26, 0.52], "range": [-190, 190], "dtick": 90}
+    chart.layout["yaxis"] = {
+        "title": {"text": "coherence \u03b3\u00b2 (1)"},
+        "domain": [0.0, 0.2],
+        "range": [0.0, 1.05],
+    }
+    chart.layout["yaxis2"] = {
+        "title": {"text": "phase (\u00b0)"},
+        "domain": [0.26, 0.52],
+        "range": [-190, 190],
+        "dtick": 90,
+    }
     chart.layout["yaxis3"] = {"title": {"text": "magnitude (%s)" % per}, "domain": [0.58, 1.0], "type": "log"}
     chart.logarithmic = "xaxis"
     return chart

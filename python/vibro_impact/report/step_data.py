@@ -1,5 +1,5 @@
-"""What the page holds of every segment, so that a reader can choose one: extremes over the whole of it, every sample of its end,
-and the spectra of its second half."""
+"""What the page holds of every segment, so that a reader can choose one: extremes over the whole of it, every sample of
+its end, and the spectra of its second half."""
 
 import numpy as np
 
@@ -17,9 +17,9 @@ LONGEST = 1 << 17
 
 
 def sizes(segments, budget):
-    """(bins, samples, lines) for each of so many segments if all together shall take no more than `budget` characters: 4 arrays of
-    bins and 2 of samples by four bytes, 2 of lines by two, 4/3 characters a byte. A fifth is for the bins, a quarter for the
-    lines. Compression comes on top, and is not counted on."""
+    """(bins, samples, lines) for each of so many segments if all together shall take no more than `budget` characters:
+    4 arrays of bins and 2 of samples by four bytes, 2 of lines by two, 4/3 characters a byte. A fifth is for the bins,
+    a quarter for the lines. Compression comes on top, and is not counted on."""
     share = 0.75 * budget / max(1, segments) - 300.0
     return (
         int(np.clip(0.20 * share / 16.0, 16, MOST_BINS)),
@@ -46,8 +46,8 @@ def quick_length(cycles, per_cycle):
 
 
 def spectrum(values, segment, sample_period, lines, top):
-    """(spacing in Hz, log10 of the amplitudes, lines merged) of the second half of a segment, whole drive cycles of it where there
-    is a drive; up to `top` Hz. None where a sample is lost."""
+    """(spacing in Hz, log10 of the amplitudes, lines merged) of the second half of a segment, whole drive cycles of it
+    where there is a drive; up to `top` Hz. None where a sample is lost."""
     half = values[segment.first + (segment.last - segment.first) // 2 : segment.last][-LONGEST:]
     if segment.frequency:
         per_cycle = 1.0 / (segment.frequency * sample_period)
@@ -93,7 +93,8 @@ def of_segment(recording, segment, size, top):
 
 
 def embedded(segments, chosen):
-    """Numbers of the segments whose data the page holds: all, or MOST_SEGMENTS evenly spread over them and the one chosen."""
+    """Numbers of the segments whose data the page holds: all, or MOST_SEGMENTS evenly spread over them and the one
+    chosen."""
     if len(segments) <= MOST_SEGMENTS:
         return list(range(len(segments)))
     return sorted(set(np.linspace(0, len(segments) - 1, MOST_SEGMENTS - 1).astype(int).tolist()) | {chosen})
