@@ -25,7 +25,7 @@ check_usability()
     echo "roslaunch --ros-args vibro_impact ${launch_file}"
     roslaunch --ros-args vibro_impact "${launch_file}"
   done
-    for program in converge extract_frf frf_sweep isolated landmarks limiting_case live plot_frf plot_simulation replay_check replay_contact report simulate write_signal; do
+  for program in converge extract_frf frf_sweep isolated landmarks limiting_case live plot_frf plot_simulation replay_check replay_contact report simulate write_signal; do
     echo "rosrun vibro_impact ${program} --help"
     rosrun vibro_impact "${program}" --help
   done
