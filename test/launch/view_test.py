@@ -159,7 +159,7 @@ class ViewTest(NodeProcessTest):
         except rospkg.ResourceNotFound:
             missing.append("rviz")
         if missing:
-            self.skipTest("not installed: %s; scripts/install_dependencies test installs them" % ", ".join(missing))
+            self.skipTest("not installed: %s; scripts/install_dependencies view pictures installs them" % ", ".join(missing))
         home = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, home)
         server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-screen", "0", "1100x800x24", "-nolisten", "tcp"],
