@@ -63,8 +63,8 @@ private:
 /// A bag of format 2.0 that need not be sound: every length, offset and number is checked before it is believed, and no
 /// more memory is asked for than there are bytes, or than a chunk says it has when it is decompressed.
 ///
-/// (rosbag's own reader believes them: where one is wrong, it reads beyond its memory or asks for all there is. It also
-/// takes twice as long, since it looks for each message by itself.)
+/// (rosbag's own reader believes them: where one is wrong, it reads beyond its memory or asks for all there is; and it
+/// looks for each message by itself, where here a chunk is read in one go.)
 ///
 /// Several threads may read one bag. Everything throws config::Error, which names the path and what is wrong.
 class BagFile

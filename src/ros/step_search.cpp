@@ -46,7 +46,16 @@ void StepSearch::handOver()
   changed_.notify_all();
   if (!kept_)
   {
-    changed_.wait(lock, [this] { return batches_.size() - done_ < most_waiting; });
+    changed_.wait(lock, [this] { return failed_ || batches_.size() - done_ < most_waiting; });
+  }
+  if (failed_)
+  {
+    lock.unlock();
+    thread_.get();  // throws what the thread has thrown
+    return;
+  }
+  if (!kept_)
+  {
     batches_.erase(batches_.begin(), batches_.begin() + static_cast<std::ptrdiff_t>(done_));
     done_ = 0;
   }
@@ -64,7 +73,17 @@ void StepSearch::work()
     }
     const Batch& batch = batches_[done_];  // stays where it is until it is done
     lock.unlock();
-    batch.giveTo(finder_);
+    try
+    {
+      batch.giveTo(finder_);
+    }
+    catch (...)  // whoever waits must not wait for ever
+    {
+      lock.lock();
+      failed_ = true;
+      changed_.notify_all();
+      throw;
+    }
     lock.lock();
     ++done_;
     changed_.notify_all();

@@ -82,6 +82,7 @@ private:
   std::deque<Batch> batches_;
   std::size_t done_ = 0;
   bool ended_ = false;
+  bool failed_ = false;  // the thread is gone
   std::size_t samples_ = 0;
   bool kept_ = true;  // all batches
 
