@@ -97,7 +97,7 @@ ViewParameters parseViewParameters(const XmlRpc::XmlRpcValue& tree, const std::s
   return parameters;
 }
 
-View::View(ros::NodeHandle node, const ros::NodeHandle& private_node)
+View::View(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
     : node_(node),
       parameters_(
           [&private_node]

@@ -40,7 +40,7 @@ class View
 {
 public:
   /// Throws config::Error with all faults of the private parameters.
-  View(ros::NodeHandle node, const ros::NodeHandle& private_node);
+  View(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
 
 private:
   void onModelInfo(const ModelInfo& info);
