@@ -209,7 +209,7 @@ TEST_F(ResponseMonitorTest, windowAndTotalsEqualTheSumsOfAllThatCame)
 TEST_F(ResponseMonitorTest, neitherTheBlocksNorWhatOvertakesWhatMatters)
 {
   const std::vector<ResponseStatistics> expected = play(stream_, monitor_, 250);
-  for (const std::size_t block_size : {50, 500, 625, 20000})
+  for (const std::size_t block_size : {50U, 500U, 625U, 20000U})
   {
     ResponseMonitor monitor(options());
     const std::vector<ResponseStatistics> reports = play(stream_, monitor, block_size, 20000 / block_size);
