@@ -21,13 +21,14 @@ from node_process import PATIENCE, NodeProcessTest, wait_until
 from simulator_rig import SimulatorRig, configuration
 from vibro_impact.msg import BaseExcitation
 
+LAUNCH_FILE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "launch", "view.launch")
 PERIOD = 2e-5
 BLOCK = 500
 FREQUENCY = 434.33
 START = rospy.Time(1700000000)
 
 # RViz draws by software here, beside other tests, s.
-SCREEN_PATIENCE = 120.0
+SCREEN_PATIENCE = 300.0
 
 
 def block(seq):
@@ -171,7 +172,7 @@ class ViewTest(NodeProcessTest):
         environment = dict(os.environ, DISPLAY=display, HOME=home, XDG_RUNTIME_DIR=home, LIBGL_ALWAYS_SOFTWARE="1",
                            QT_QPA_PLATFORM="xcb", ROS_NAMESPACE=self.namespace)
         # Slower than it would be by itself, so that even a few pictures a second show the arrow.
-        launch = subprocess.Popen(["roslaunch", "vibro_impact", "view.launch", "demo:=true", "slow_motion:=2000"],
+        launch = subprocess.Popen(["roslaunch", LAUNCH_FILE, "demo:=true", "slow_motion:=2000"],
                                   env=environment, stdout=self.output, stderr=subprocess.STDOUT)
 
         def end():
