@@ -48,38 +48,29 @@ VIBRO_IMPACT_INLINE void addSizes(Packet& sum, const Packet& weights, const Pack
   sum += weights * (Packet(Bits(x) & magnitude) + Packet(Bits(y) & magnitude));
 }
 
-/// Some rows of addProducts(): few enough that the sums stay in registers.
-template <std::size_t first, std::size_t last>
-VIBRO_IMPACT_INLINE void addProductRows(const ProductRow* rows, std::size_t count,
-                                        std::array<ProductRow, most_products>& sums)
+/// The sums of SineSums, `lanes` of each side by side.
+struct SinePackets
 {
-  constexpr std::size_t width = (last - 1) / lanes + 1;
-  Packet sum[last - first][width];
-  for (std::size_t k = first; k < last; ++k)
-  {
-    for (std::size_t p = 0; p <= k / lanes; ++p)
-    {
-      sum[k - first][p] = packets(sums[k].data())[p];
-    }
-  }
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    const Packet* const row = packets(rows[i].data());
-    for (std::size_t k = first; k < last; ++k)
-    {
-      for (std::size_t p = 0; p <= k / lanes; ++p)
-      {
-        sum[k - first][p] += rows[i][k] * row[p];
-      }
-    }
-  }
-  for (std::size_t k = first; k < last; ++k)
-  {
-    for (std::size_t p = 0; p <= k / lanes; ++p)
-    {
-      packets(sums[k].data())[p] = sum[k - first][p];
-    }
-  }
+  Packet sum{}, squares{}, cosine[3]{}, sine[3]{}, moment_cosine{}, moment_sine{};
+};
+
+/// Adds samples y at the positions n, where c and s are cos(step n) and sin(step n).
+VIBRO_IMPACT_INLINE void add(SinePackets& sums, const Packet& y, const Packet& n, const Packet& c, const Packet& s)
+{
+  const Packet y_cos = y * c;
+  const Packet y_sin = y * s;
+  const Packet cos_two = c * c - s * s;
+  const Packet sin_two = 2.0 * c * s;
+  sums.sum += y;
+  sums.squares += y * y;
+  sums.cosine[0] += y_cos;
+  sums.sine[0] += y_sin;
+  sums.cosine[1] += y * cos_two;
+  sums.sine[1] += y * sin_two;
+  sums.cosine[2] += y_cos * cos_two - y_sin * sin_two;
+  sums.sine[2] += y_sin * cos_two + y_cos * sin_two;
+  sums.moment_cosine += n * y_cos;
+  sums.moment_sine += n * y_sin;
 }
 
 /// `count` packets of exponentials from n on, side by side in registers: each waits for its own last product only.
@@ -478,18 +469,62 @@ void multiplyTwo(const double* matrix, Eigen::Index rows, Eigen::Index columns, 
 }
 
 VIBRO_IMPACT_CLONES
-void addProducts(const ProductRow* rows, std::size_t count, std::size_t columns,
-                 std::array<ProductRow, most_products>& sums)
+void addSineSums(const double* samples, std::size_t count, double step, double first, SineSums& sums)
 {
-  addProductRows<0, 6>(rows, count, sums);
-  if (columns > 6)
+  // Samples after which the rotation is computed anew, before its rounding errors add up.
+  constexpr std::size_t renewal = 256;
+  static_assert(renewal % lanes == 0, "only the last packet of all is not full");
+  constexpr std::size_t width = lanes;
+  const double step_cos = std::cos(step);
+  const double step_sin = std::sin(step);
+  const double ahead_cos = std::cos(step * static_cast<double>(width));
+  const double ahead_sin = std::sin(step * static_cast<double>(width));
+  SinePackets lanes_sums{};
+  Packet n{};
+  Packet c{};
+  Packet s{};
+  for (std::size_t i = 0; i < count; i += width)
   {
-    addProductRows<6, 8>(rows, count, sums);
+    if (i % renewal == 0)
+    {
+      const double position = first + static_cast<double>(i);
+      n[0] = position;
+      c[0] = std::cos(step * position);
+      s[0] = std::sin(step * position);
+      for (std::size_t lane = 1; lane < width; ++lane)
+      {
+        n[lane] = position + static_cast<double>(lane);
+        c[lane] = c[lane - 1] * step_cos - s[lane - 1] * step_sin;
+        s[lane] = s[lane - 1] * step_cos + c[lane - 1] * step_sin;
+      }
+    }
+    Packet y{};
+    if (count - i >= width)
+    {
+      y = *packets(samples + i);
+    }
+    else
+    {
+      for (std::size_t lane = 0; lane < count - i; ++lane)
+      {
+        y[lane] = samples[i + lane];
+      }
+    }
+    add(lanes_sums, y, n, c, s);
+    n += static_cast<double>(width);
+    const Packet ahead = c * ahead_cos - s * ahead_sin;
+    s = s * ahead_cos + c * ahead_sin;
+    c = ahead;
   }
-  if (columns > 8)
+  sums.sum += sum(lanes_sums.sum);
+  sums.squares += sum(lanes_sums.squares);
+  for (std::size_t h = 0; h < 3; ++h)
   {
-    addProductRows<8, 10>(rows, count, sums);
+    sums.cosine[h] += sum(lanes_sums.cosine[h]);
+    sums.sine[h] += sum(lanes_sums.sine[h]);
   }
+  sums.moment_cosine += sum(lanes_sums.moment_cosine);
+  sums.moment_sine += sum(lanes_sums.moment_sine);
 }
 
 }  // namespace vibro_impact::core

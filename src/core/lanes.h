@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "vibro_impact/core/sine_fit.h"
+
 namespace vibro_impact::core
 {
 // Vectors in the advance of the model have a length that is a multiple of `lanes` (padded with zeros). There is no
@@ -145,14 +147,7 @@ std::array<double, 4> evaluateFourForms(const double* weights, const double* z, 
 void multiplyTwo(const double* matrix, Eigen::Index rows, Eigen::Index columns, const double* x, const double* y,
                  double* x_to, double* y_to);
 
-/// Columns of a table of samples, and room for as many.
-constexpr std::size_t most_products = 10;
-constexpr std::size_t product_stride = 12;
-using ProductRow = std::array<double, product_stride>;
-
-/// sums[k][l] += row[k] row[l] of one row after the other, l <= k < columns (6, 8 or 10); what lies beyond the diagonal
-/// means nothing. Rows are padded with zeros.
-void addProducts(const ProductRow* rows, std::size_t count, std::size_t columns,
-                 std::array<ProductRow, most_products>& sums);
+/// Adds the sums of `count` samples from the position `first` on, `step` in rad.
+void addSineSums(const double* samples, std::size_t count, double step, double first, SineSums& sums);
 
 }  // namespace vibro_impact::core

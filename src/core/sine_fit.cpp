@@ -1,6 +1,7 @@
 #include "vibro_impact/core/sine_fit.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -14,17 +15,100 @@ namespace vibro_impact::core
 {
 namespace
 {
-constexpr int most = 2 * SineFitter::most_harmonics + 4;
+constexpr int most = 2 * SineFitter::most_harmonics + 3;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1>;
-
-// Samples after which the rotation is computed anew.
-constexpr std::size_t renewal = 256;
 
 // Half way between the first and the last of `count` samples, in samples.
 double middleOf(std::size_t count)
 {
   return 0.5 * static_cast<double>(count - 1);
+}
+
+// Sums over the positions n = -(count - 1)/2, ..., (count - 1)/2.
+struct PositionSums
+{
+  double cosine;  // cos(angle n)
+  double moment;  // n sin(angle n)
+  double second;  // n^2 cos(angle n)
+};
+
+// The first is Dirichlet's kernel D = sin(count angle/2)/sin(angle/2); the others are -D' and -D'', from
+//   2 sin(angle/2) D' = count cos(count angle/2) - cos(angle/2) D,    D'' = (1 - count^2)/4 D - cot(angle/2) D'
+PositionSums sumOverPositions(double angle, std::size_t count)
+{
+  const auto positions = static_cast<double>(count);
+  const double sine = std::sin(0.5 * angle);
+  const double cosine = std::cos(0.5 * angle);
+  // Over less than a sixth of a turn the differences above cancel. A fit over a cycle or more asks this of angle 0
+  // only.
+  if (std::abs(sine) * positions < 0.5)
+  {
+    PositionSums sums{0.0, 0.0, 0.0};
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      const double n = static_cast<double>(i) - middleOf(count);
+      sums.cosine += std::cos(angle * n);
+      sums.moment += n * std::sin(angle * n);
+      sums.second += n * n * std::cos(angle * n);
+    }
+    return sums;
+  }
+  const double kernel = std::sin(0.5 * positions * angle) / sine;
+  const double slope = (positions * std::cos(0.5 * positions * angle) - cosine * kernel) / (2.0 * sine);
+  return {kernel, -slope, (0.25 * (positions * positions - 1.0)) * kernel + cosine / sine * slope};
+}
+
+// The normal equations of the columns 1; cos and sin of every harmonic; tau cos and tau sin, with tau = n/half.
+struct NormalEquations
+{
+  Matrix normal;
+  Vector right;
+};
+
+// Positions lie evenly about zero, so that products of an even and an odd column leave nothing.
+NormalEquations normalEquations(double step, std::size_t count, int harmonics, double half, const SineSums& samples)
+{
+  const auto positions = static_cast<double>(count);
+  std::array<PositionSums, 2 * SineFitter::most_harmonics + 1> at{};  // at multiples of the step
+  at[0] = {positions, 0.0, positions * (positions * positions - 1.0) / 12.0};
+  for (std::size_t k = 1; k < at.size(); ++k)
+  {
+    at[k] = sumOverPositions(static_cast<double>(k) * step, count);
+  }
+  const Eigen::Index columns = 2 * harmonics + 3;
+  const Eigen::Index tau_cos = columns - 2;
+  const Eigen::Index tau_sin = columns - 1;
+  NormalEquations equations{Matrix::Zero(columns, columns), Vector::Zero(columns)};
+  Matrix& normal = equations.normal;
+  Vector& right = equations.right;
+  normal(0, 0) = positions;
+  right(0) = samples.sum;
+  for (Eigen::Index h = 1; h <= harmonics; ++h)
+  {
+    const Eigen::Index cos_h = 2 * h - 1;
+    const Eigen::Index sin_h = 2 * h;
+    const auto order = static_cast<std::size_t>(h);
+    normal(cos_h, 0) = at[order].cosine;
+    for (Eigen::Index l = 1; l <= h; ++l)
+    {
+      const double difference = at[static_cast<std::size_t>(h - l)].cosine;
+      const double sum = at[static_cast<std::size_t>(h + l)].cosine;
+      normal(cos_h, 2 * l - 1) = 0.5 * (difference + sum);
+      normal(sin_h, 2 * l) = 0.5 * (difference - sum);
+    }
+    normal(tau_sin, cos_h) = 0.5 * (at[order + 1].moment - at[order - 1].moment) / half;
+    normal(tau_cos, sin_h) = 0.5 * (at[order + 1].moment + at[order - 1].moment) / half;
+    right(cos_h) = samples.cosine[order - 1];
+    right(sin_h) = samples.sine[order - 1];
+  }
+  normal(tau_sin, 0) = at[1].moment / half;
+  normal(tau_cos, tau_cos) = 0.5 * (at[0].second + at[2].second) / (half * half);
+  normal(tau_sin, tau_sin) = 0.5 * (at[0].second - at[2].second) / (half * half);
+  right(tau_cos) = samples.moment_cosine / half;
+  right(tau_sin) = samples.moment_sine / half;
+  normal.triangularView<Eigen::StrictlyUpper>() = normal.transpose();
+  return equations;
 }
 
 SineFit fitOf(double frequency, const Vector& parameters, double sum_of_squares, std::size_t count)
@@ -41,11 +125,7 @@ SineFit fitOf(double frequency, const Vector& parameters, double sum_of_squares,
 }  // namespace
 
 SineFitter::SineFitter(double frequency, double sample_period, std::size_t count, int harmonics)
-    : frequency_(frequency),
-      sample_period_(sample_period),
-      count_(count),
-      harmonics_(harmonics),
-      columns_(2 * harmonics + 4)
+    : frequency_(frequency), sample_period_(sample_period), count_(count), harmonics_(harmonics)
 {
   if (!std::isfinite(frequency) || frequency <= 0.0)
   {
@@ -74,107 +154,52 @@ std::size_t SineFitter::fewestSamples(int harmonics)
 std::size_t SineFitter::add(const double* samples, std::size_t count)
 {
   const std::size_t taken = std::min(count, count_ - added_);
-  switch (harmonics_)
-  {
-    case 1:
-      accumulate<1>(samples, taken);
-      break;
-    case 2:
-      accumulate<2>(samples, taken);
-      break;
-    default:
-      accumulate<3>(samples, taken);
-  }
+  addSineSums(samples, taken, frequency_ * sample_period_, static_cast<double>(added_) - middleOf(count_), sums_);
   added_ += taken;
   return taken;
 }
 
-// The number of harmonics is known to the compiler: this loop takes most of the time of a search for steps.
-template <int harmonics>
-void SineFitter::accumulate(const double* samples, std::size_t count)
+void SineFitter::requireComplete() const
 {
-  constexpr std::size_t columns = 2 * harmonics + 4;
-  const double step = frequency_ * sample_period_;
-  const double middle = middleOf(count_);
-  const double half = std::max(middle, 0.5);
-  const double step_cos = std::cos(step);
-  const double step_sin = std::sin(step);
-  double c = 0.0;
-  double s = 0.0;
-  // A table at a time, whose products are then summed by as many at once as the processor can.
-  constexpr std::size_t most_rows = 64;
-  static_assert(renewal % most_rows == 0, "the rotation is renewed with a table");
-  std::array<ProductRow, most_rows> rows{};
-  std::array<ProductRow, most_products> sums{};
-  for (std::size_t first = 0; first < count; first += most_rows)
+  if (!complete())
   {
-    const std::size_t last = std::min(count, first + most_rows);
-    // The rotation from sample to sample is renewed before its rounding errors add up.
-    if (first % renewal == 0)
-    {
-      const double position = static_cast<double>(added_ + first) - middle;
-      c = std::cos(step * position);
-      s = std::sin(step * position);
-    }
-    for (std::size_t i = first; i < last; ++i)
-    {
-      ProductRow& row = rows[i - first];
-      row[0] = 1.0;
-      row[1] = c;
-      row[2] = s;
-      for (std::size_t h = 1; h < harmonics; ++h)
-      {
-        row[2 * h + 1] = row[2 * h - 1] * c - row[2 * h] * s;
-        row[2 * h + 2] = row[2 * h] * c + row[2 * h - 1] * s;
-      }
-      const double tau = (static_cast<double>(added_ + i) - middle) / half;
-      row[columns - 3] = tau * c;
-      row[columns - 2] = tau * s;
-      row[columns - 1] = samples[i];
-      const double next_cos = c * step_cos - s * step_sin;
-      s = s * step_cos + c * step_sin;
-      c = next_cos;
-    }
-    addProducts(rows.data(), last - first, columns, sums);
+    throw std::logic_error("sine fit: " + std::to_string(added_) + " of " + std::to_string(count_) +
+                           " samples have been added");
   }
-  for (std::size_t k = 0; k < columns; ++k)
-  {
-    for (std::size_t l = 0; l <= k; ++l)
-    {
-      gram_[k][l] += sums[k][l];
-    }
-  }
+}
+
+double SineFitter::half() const
+{
+  return std::max(middleOf(count_), 0.5);
 }
 
 SineFit SineFitter::knownFrequency() const
 {
-  const Eigen::Map<const Eigen::Matrix<double, most_columns, most_columns, Eigen::RowMajor>> gram(gram_[0].data());
-  const Eigen::Index parameters = columns_ - 3;
-  const Matrix normal = gram.topLeftCorner(parameters, parameters);
-  const Vector right = gram.row(columns_ - 1).head(parameters).transpose();
-  const Vector solution = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  return fitOf(frequency_, solution, gram(columns_ - 1, columns_ - 1) - right.dot(solution), added_);
+  requireComplete();
+  const NormalEquations all = normalEquations(frequency_ * sample_period_, count_, harmonics_, half(), sums_);
+  const Eigen::Index parameters = all.right.size() - 2;
+  const Matrix normal = all.normal.topLeftCorner(parameters, parameters);
+  const Vector right = all.right.head(parameters);
+  const Vector solution = normal.ldlt().solve(right);
+  return fitOf(frequency_, solution, sums_.squares - right.dot(solution), added_);
 }
 
 SineFit SineFitter::unknownFrequency() const
 {
   const SineFit start = knownFrequency();
-  const Eigen::Map<const Eigen::Matrix<double, most_columns, most_columns, Eigen::RowMajor>> gram(gram_[0].data());
-  const Matrix full = gram.topLeftCorner(columns_, columns_).selfadjointView<Eigen::Lower>();
+  const NormalEquations all = normalEquations(frequency_ * sample_period_, count_, harmonics_, half(), sums_);
 
   // The derivative with respect to the frequency, (B cos - A sin) tau, takes the place of tau cos and tau sin.
-  const Eigen::Index parameters = columns_ - 2;
-  Matrix choice = Matrix::Zero(columns_, parameters);
+  const Eigen::Index parameters = all.right.size() - 1;
+  Matrix choice = Matrix::Zero(parameters + 1, parameters);
   choice.topLeftCorner(parameters - 1, parameters - 1).setIdentity();
-  choice(columns_ - 3, parameters - 1) = -start.amplitude * std::sin(start.phase);
-  choice(columns_ - 2, parameters - 1) = -start.amplitude * std::cos(start.phase);
-  const Matrix normal = choice.transpose() * full * choice;
-  const Vector right = choice.transpose() * full.col(columns_ - 1);
+  choice(parameters - 1, parameters - 1) = -start.amplitude * std::sin(start.phase);
+  choice(parameters, parameters - 1) = -start.amplitude * std::cos(start.phase);
+  const Matrix normal = choice.transpose() * all.normal * choice;
+  const Vector right = choice.transpose() * all.right;
   const Vector solution = normal.ldlt().solve(right);
-
-  const double half = std::max(middleOf(count_), 0.5) * sample_period_;
-  return fitOf(frequency_ + solution(parameters - 1) / half, solution,
-               full(columns_ - 1, columns_ - 1) - right.dot(solution), added_);
+  return fitOf(frequency_ + solution(parameters - 1) / (half() * sample_period_), solution,
+               sums_.squares - right.dot(solution), added_);
 }
 
 SineFit fitSine(const double* samples, std::size_t count, double sample_period, double frequency, int harmonics)
