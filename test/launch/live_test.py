@@ -1,14 +1,12 @@
 #!/usr/bin/python3
 """The terminal view in a real terminal (tmux) before a real simulator: what it draws, its keys, and how it ends."""
 
-import math
 import os
 import re
 import shutil
 import signal
 import subprocess
 import tempfile
-import threading
 import time
 
 import rospy
@@ -16,21 +14,7 @@ import rostest
 from roslib.packages import find_node
 
 from node_process import PATIENCE, NodeProcessTest, free_port, wait_until
-from simulator_rig import SimulatorRig, configuration
-from vibro_impact.msg import BaseExcitation
-
-PERIOD = 2e-5
-BLOCK = 500
-FREQUENCY = 434.33
-START = rospy.Time(1700000000)
-
-
-def block(seq):
-    message = BaseExcitation(seq=seq, sample_period=PERIOD)
-    message.header.stamp = START + rospy.Duration(nsecs=round(1e9 * seq * PERIOD))
-    message.acceleration = [
-        10.0 * math.sin(2.0 * math.pi * FREQUENCY * (seq + i) * PERIOD) for i in range(BLOCK)]
-    return message
+from simulator_rig import BLOCK, ShakenSimulator, SimulatorRig, configuration, sine_block
 
 
 class Terminal:
@@ -75,14 +59,11 @@ class LiveTest(NodeProcessTest):
         super().setUp()
         self.program = find_node("vibro_impact", "live")[0]
         self.terminals = []
-        self.playing = threading.Event()
-        self.ended = threading.Event()
-        self.player = None
+        self.shaken = None
 
     def tearDown(self):
-        self.ended.set()
-        if self.player:
-            self.player.join()
+        if self.shaken:
+            self.shaken.end()
         for terminal in self.terminals:
             terminal.close()
         super().tearDown()
@@ -91,21 +72,6 @@ class LiveTest(NodeProcessTest):
         self.terminals.append(Terminal(width, height, **environment))
         self.assertTrue(self.terminals[-1].shows("prompt>"))
         return self.terminals[-1]
-
-    def play(self):
-        """A simulator in the namespace of the test, and a sine that shakes it while self.playing is set."""
-        self.rig = SimulatorRig(self, self.namespace, configuration("limiting_case.yaml"))
-        self.rig.connect()
-
-        def play():
-            seq = 0
-            while not self.ended.wait(BLOCK * PERIOD):
-                if self.playing.is_set():
-                    self.rig.publisher.publish(block(seq))
-                    seq += BLOCK
-        self.playing.set()
-        self.player = threading.Thread(target=play)
-        self.player.start()
 
     def live(self, *options):
         return " ".join([self.program, "__ns:=" + self.namespace] + list(options))
@@ -123,7 +89,7 @@ class LiveTest(NodeProcessTest):
             self.assertIn(setting, settings)
 
     def test_draws_what_comes_and_obeys_keys(self):
-        self.play()
+        self.shaken = ShakenSimulator(self)
         terminal = self.terminal()
         terminal.type(self.live())
         self.expect(terminal, r"running\n(.*\n)*drive 434\.\d\d Hz   impacts 4\d\d/s \((1\.0|0\.9)")
@@ -149,8 +115,9 @@ class LiveTest(NodeProcessTest):
         terminal.press("p")
         self.expect(terminal, "FROZEN, p goes on")
         frozen = terminal.screen()
-        samples = len(self.rig.messages["gap"])
-        self.assertTrue(wait_until(lambda: len(self.rig.messages["gap"]) > samples + 50))
+        gaps = self.shaken.rig.messages["gap"]
+        blocks = len(gaps)
+        self.assertTrue(wait_until(lambda: len(gaps) > blocks + 50))
         self.assertEqual(terminal.screen(), frozen)
         terminal.press("p")
         self.expect(terminal, "running")
@@ -163,15 +130,15 @@ class LiveTest(NodeProcessTest):
         terminal.tmux("resize-window", "-x", "80", "-y", "24")
         self.expect(terminal, "q quit")
 
-        self.playing.clear()
+        self.shaken.playing.clear()
         self.expect(terminal, r"STALE, nothing for \d+ s")
-        self.playing.set()
+        self.shaken.playing.set()
         self.expect(terminal, "running")
         terminal.press("q")
         self.expect_restored(terminal)
 
     def test_draws_in_ascii_and_ends_by_signals(self):
-        self.play()
+        self.shaken = ShakenSimulator(self)
         for end in ("interrupt", "terminate"):
             terminal = self.terminal()
             terminal.type(self.live("--ascii") + "; echo status $?")
@@ -188,16 +155,16 @@ class LiveTest(NodeProcessTest):
             self.expect_restored(terminal)
 
     def test_does_not_hold_up_the_simulator(self):
-        self.rig = SimulatorRig(self, self.namespace, configuration("limiting_case.yaml"))
-        self.rig.connect()
+        rig = SimulatorRig(self, self.namespace, configuration("limiting_case.yaml"))
+        rig.connect()
         process = subprocess.Popen([self.program, "__ns:=" + self.namespace, "--once", "--timeout", "1000"],
                                    stdout=subprocess.PIPE, universal_newlines=True)
         self.processes.append(process)
-        self.assertTrue(wait_until(lambda: self.rig.publisher.get_num_connections() == 2))
+        self.assertTrue(wait_until(lambda: rig.publisher.get_num_connections() == 2))
         process.send_signal(signal.SIGSTOP)
         for seq in range(0, 300 * BLOCK, BLOCK):
-            self.rig.publisher.publish(block(seq))
-        self.rig.answered(300)
+            rig.publisher.publish(sine_block(seq))
+        rig.answered(300)
         process.send_signal(signal.SIGCONT)
         printed = process.communicate(timeout=PATIENCE)[0]
         self.assertEqual(process.returncode, 0)
@@ -232,7 +199,7 @@ class LiveTest(NodeProcessTest):
         result = self.run_live("--once", "--timeout", "0.2", LC_ALL="C")
         self.assertEqual((result.returncode, result.stderr), (1, ""))
         self.assertIn("waiting for topic %s/gap" % self.namespace, result.stdout)
-        self.play()
+        self.shaken = ShakenSimulator(self)
         result = self.run_live("--plain", "--width", "100", "--height", "30", LC_ALL="C")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertTrue(result.stdout.isascii())

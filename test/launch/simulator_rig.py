@@ -1,6 +1,8 @@
 """A simulator as a process of its own in a namespace of its own, and all that it publishes."""
 
+import math
 import os
+import threading
 
 import rospkg
 import rospy
@@ -14,6 +16,12 @@ from vibro_impact.srv import SetContact
 
 PACKAGE = rospkg.RosPack().get_path("vibro_impact")
 
+# Of the sine that a ShakenSimulator is shaken by: s, samples, Hz, m/s^2.
+PERIOD = 2e-5
+BLOCK = 500
+FREQUENCY = 434.33
+ACCELERATION = 10.0
+
 
 def configuration(name, **parameters):
     """A configuration that is shipped, for a node that loses nothing and tells often what it does."""
@@ -24,6 +32,15 @@ def configuration(name, **parameters):
 def fields(message):
     """All that an impact says, without what roscpp writes into its header."""
     return [str(message.header.stamp)] + [getattr(message, slot) for slot in message.__slots__ if slot != "header"]
+
+
+def sine_block(seq):
+    """Near the resonance of the limiting case: an impact in every cycle."""
+    message = BaseExcitation(seq=seq, sample_period=PERIOD)
+    message.header.stamp = rospy.Time(1700000000) + rospy.Duration(nsecs=round(1e9 * seq * PERIOD))
+    message.acceleration = [
+        ACCELERATION * math.sin(2.0 * math.pi * FREQUENCY * i * PERIOD) for i in range(seq, seq + BLOCK)]
+    return message
 
 
 class SimulatorRig:
@@ -103,3 +120,27 @@ class SimulatorRig:
         """How many messages of each topic there are, and what the diagnostics have counted."""
         return "%s, %s\n" % ({topic: len(messages) for topic, messages in self.messages.items()},
                              {key: self.count(key) for key in ("Blocks accepted", "Blocks refused", "Impacts")})
+
+
+class ShakenSimulator:
+    """The limiting case in the namespace of a test, and a thread that shakes it at about real time while `playing` is set."""
+
+    def __init__(self, test):
+        self.rig = SimulatorRig(test, test.namespace, configuration("limiting_case.yaml"))
+        self.rig.connect()
+        self.playing = threading.Event()
+        self.playing.set()
+        self.ended = threading.Event()
+        self.player = threading.Thread(target=self.play)
+        self.player.start()
+
+    def play(self):
+        seq = 0
+        while not self.ended.wait(BLOCK * PERIOD):
+            if self.playing.is_set():
+                self.rig.publisher.publish(sine_block(seq))
+                seq += BLOCK
+
+    def end(self):
+        self.ended.set()
+        self.player.join()

@@ -1,13 +1,11 @@
 #!/usr/bin/python3
 """The node `view`: what it draws of a real simulator, and that RViz shows it, on a screen that nobody sees."""
 
-import math
 import os
 import shutil
 import signal
 import subprocess
 import tempfile
-import threading
 import time
 from xmlrpc.client import ServerProxy
 
@@ -18,25 +16,12 @@ import rostest
 from visualization_msgs.msg import Marker, MarkerArray
 
 from node_process import PATIENCE, NodeProcessTest, wait_until
-from simulator_rig import SimulatorRig, configuration
-from vibro_impact.msg import BaseExcitation
+from simulator_rig import ShakenSimulator
 
 LAUNCH_FILE = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "launch", "view.launch")
-PERIOD = 2e-5
-BLOCK = 500
-FREQUENCY = 434.33
-START = rospy.Time(1700000000)
 
 # RViz draws by software here, beside other tests, s.
 SCREEN_PATIENCE = 300.0
-
-
-def block(seq):
-    message = BaseExcitation(seq=seq, sample_period=PERIOD)
-    message.header.stamp = START + rospy.Duration(nsecs=round(1e9 * seq * PERIOD))
-    message.acceleration = [
-        10.0 * math.sin(2.0 * math.pi * FREQUENCY * (seq + i) * PERIOD) for i in range(BLOCK)]
-    return message
 
 
 def listens_to(node, topic):
@@ -52,13 +37,11 @@ class ViewTest(NodeProcessTest):
     def setUp(self):
         super().setUp()
         self.scenes = []
-        self.ended = threading.Event()
-        self.player = None
+        self.shaken = None
 
     def tearDown(self):
-        self.ended.set()
-        if self.player:
-            self.player.join()
+        if self.shaken:
+            self.shaken.end()
         super().tearDown()
 
     def watch(self):
@@ -68,18 +51,8 @@ class ViewTest(NodeProcessTest):
 
     def simulate(self):
         self.node = "simulator"
-        rig = SimulatorRig(self, self.namespace, configuration("limiting_case.yaml"))
+        self.shaken = ShakenSimulator(self)
         self.node = "view"
-        rig.connect()
-
-        def play():
-            seq = 0
-            while not self.ended.wait(BLOCK * PERIOD):
-                rig.publisher.publish(block(seq))
-                seq += BLOCK
-        self.player = threading.Thread(target=play)
-        self.player.start()
-        return rig
 
     def marker(self, name, number=0):
         """Of the newest scene; None if it is not there."""
@@ -99,7 +72,7 @@ class ViewTest(NodeProcessTest):
         self.watch()
         self.start({"displacement_scale": 3000})
         self.expect(lambda: self.words() == "waiting for topic %s/model_info" % self.namespace)
-        rig = self.simulate()
+        self.simulate()
         self.expect(lambda: self.words().startswith("slowed 1000 x: "))
         self.assertIn(" of the stream, then the newest (drive 434 Hz)\n", self.words())
         self.assertIn("\nlengths x 18.9, displacement x 3000 relative to the base\n", self.words())
@@ -120,9 +93,9 @@ class ViewTest(NodeProcessTest):
         self.assertGreater(checked, 10)
 
         # When nothing comes any more, it says so.
-        self.ended.set()
+        self.shaken.playing.clear()
         self.expect(lambda: "\nstale: no motion for " in self.words())
-        self.assertTrue(rig.messages["gap"])
+        self.assertTrue(self.shaken.rig.messages["gap"])
 
     def test_asks_for_the_motion_only_while_somebody_looks(self):
         subscriber = self.watch()
