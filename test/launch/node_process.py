@@ -11,8 +11,8 @@ import rosgraph
 import rospy
 from roslib.packages import find_node
 
-# Longer than anything takes on a busy machine, s.
-PATIENCE = 30.0
+# Longer than anything takes, though a virtual machine be given a tenth of its processors, s: ends what hangs.
+PATIENCE = 120.0
 
 
 def free_port():

@@ -11,7 +11,7 @@ import rospy
 import rostest
 from roslib.packages import find_node
 
-from node_process import PATIENCE, NodeProcessTest, wait_until
+from node_process import PATIENCE, NodeProcessTest, is_connected, wait_until
 from vibro_impact.msg import BaseExcitation, Gap
 
 
@@ -124,8 +124,8 @@ class ShakerProcessTest(NodeProcessTest):
 
     def test_silence_instead_of_answers_ends_it(self):
         self.subscribe()
-        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1, timeout=1.0))
         self.advertise_answers()
+        process = self.start(sine(speed=0.0, max_blocks_ahead=3, wait_for_subscribers=1, timeout=3.0))
         self.expect_end(process, 1)
         self.assertIn("150 samples published, 0 answered", self.printed())
 
@@ -144,7 +144,9 @@ class ShakerProcessTest(NodeProcessTest):
             [find_node("rosbag", "record")[0], "-O", directory.name + "/lost", "base_excitation",
              "__ns:=" + self.namespace, "__name:=record"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.processes.append(record)
-        parameters = sine(recorder="record", recorded_topics=["base_excitation"], timeout=2.0)
+        # The shaker is patient for a few seconds only, so that the recorder comes first.
+        self.assertTrue(wait_until(lambda: is_connected(self.namespace + "/record", [])))
+        parameters = sine(recorder="record", recorded_topics=["base_excitation"], timeout=4.0)
         parameters["signal"]["cycles"] = 1000000
         blocks = self.subscribe()
         process = self.start(parameters)
