@@ -31,6 +31,22 @@ if(VIBRO_IMPACT_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
+# Large headers of libraries, which most sources of a target wait for, are compiled once: vibro_impact_precompile(TARGET
+# HEADER...). The targets of a folder share what the first of them has compiled.
+option(VIBRO_IMPACT_PRECOMPILED_HEADERS "Compile large headers of libraries once, not once a source" ON)
+function(vibro_impact_precompile target)
+  if(NOT VIBRO_IMPACT_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  get_property(first DIRECTORY PROPERTY vibro_impact_precompiled)
+  if(first)
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    set_property(DIRECTORY PROPERTY vibro_impact_precompiled ${target})
+  endif()
+endfunction()
+
 # Our own code only: vibro_impact_target_settings(TARGET).
 function(vibro_impact_target_settings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
