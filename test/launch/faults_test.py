@@ -462,9 +462,8 @@ class FaultsTest(NodeProcessTest):
 
     def test_no_room_to_record_from_the_start(self):
         self.start_node("simulator", configuration())
-        recorder = self.record("--min-space=9000000G")
+        self.assertEqual(self.record("--min-space=9000000G").wait(PATIENCE), 1, self.printed())
         shaker = self.start_node("shaker", sine(1.0, recorder="record", timeout=1.0))
-        self.assertEqual(recorder.wait(PATIENCE), 1, self.printed())
         self.assertEqual(shaker.wait(PATIENCE), 1, self.printed())
         self.assertIn("in vain for ", self.printed())
         self.assertIn("%s/record to record %s/gap" % (self.namespace, self.namespace), self.printed())
