@@ -1,5 +1,6 @@
 // Pulses of acceleration.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -54,7 +55,8 @@ private:
     if (parameters_.repetitions > 1)
     {
       const double pulse = std::floor((since + tolerance) / parameters_.interval);
-      since -= parameters_.interval * std::fmin(pulse, static_cast<double>(parameters_.repetitions - 1));
+      // None before the first, however long that is waited for, and none after the last.
+      since -= parameters_.interval * std::clamp(pulse, 0.0, static_cast<double>(parameters_.repetitions - 1));
     }
     if (since <= 0.0 || since > parameters_.duration + tolerance)
     {

@@ -71,6 +71,27 @@ TEST(Shock, isASawtoothThatFallsFromItsPeak)
   }
 }
 
+TEST(Shock, hasNoPulseBeforeTheFirst)
+{
+  // Waits for longer than from pulse to pulse.
+  ShockParameters parameters = shock(ShockShape::half_sine);
+  parameters.before = 2.5;
+  const std::vector<double> samples = generate(*makeDriveSignal(parameters, sample_rate));
+  std::vector<double> crests;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+  {
+    if (samples[i] > 149.999)
+    {
+      crests.push_back(static_cast<double>(i));
+    }
+  }
+  EXPECT_EQ(crests, (std::vector<double>{25055.0, 35055.0, 45055.0}));
+  for (std::size_t i = 0; i <= 25000; ++i)
+  {
+    ASSERT_EQ(samples[i], 0.0) << i;
+  }
+}
+
 TEST(Shock, leavesTheVelocityThatItSays)
 {
   const ShockParameters half_sine = shock(ShockShape::half_sine);
