@@ -26,6 +26,24 @@ double wholeDuration(const ShockParameters& parameters)
          parameters.duration + parameters.after;
 }
 
+// The last sample of a pulse that begins with sample zero: at its end, or before it.
+double lastSample(const ShockParameters& parameters, double sample_rate)
+{
+  return std::floor(parameters.duration * sample_rate + end_tolerance);
+}
+
+// What comes after the last pulse may be nothing; but the acceleration comes back to zero in any case.
+std::uint64_t sampleCount(const ShockParameters& parameters, double sample_rate)
+{
+  ShockParameters pulses = parameters;
+  pulses.after = 0.0;
+  const double end = wholeDuration(pulses);
+  const std::uint64_t first_not_before = samplesBefore(end, sample_rate);
+  const bool at_peak = parameters.shape == ShockShape::terminal_peak_sawtooth &&
+                       static_cast<double>(first_not_before) <= end * sample_rate + end_tolerance;
+  return std::max(samplesBefore(wholeDuration(parameters), sample_rate), first_not_before + (at_peak ? 2 : 1));
+}
+
 class Shock : public DriveSignal
 {
 public:
@@ -77,6 +95,20 @@ double velocityChange(const ShockParameters& parameters)
   return parameters.shape == ShockShape::half_sine ? 4.0 / two_pi * area : 0.5 * area;
 }
 
+double velocityChange(const ShockParameters& parameters, double sample_rate)
+{
+  // The sum over the samples of a pulse that begins with one, since all beyond it are zero.
+  const double samples = parameters.duration * sample_rate;
+  const double last = lastSample(parameters, sample_rate);
+  if (parameters.shape == ShockShape::terminal_peak_sawtooth)
+  {
+    return parameters.peak * 0.5 * last * (last + 1.0) / (samples * sample_rate);
+  }
+  const double half_step = 0.25 * two_pi / samples;
+  return parameters.peak * std::sin(last * half_step) * std::sin((last + 1.0) * half_step) /
+         (std::sin(half_step) * sample_rate);
+}
+
 void findFaults(const ShockParameters& parameters, DriveFaults& faults)
 {
   faults.check(std::isfinite(parameters.peak) && parameters.peak != 0.0, "peak", parameters.peak,
@@ -104,7 +136,7 @@ void findFaults(const ShockParameters& parameters, DriveFaults& faults)
 
 std::unique_ptr<const DriveSignal> makeSignal(const ShockParameters& parameters, double sample_rate)
 {
-  return std::make_unique<Shock>(parameters, sample_rate, samplesBefore(wholeDuration(parameters), sample_rate));
+  return std::make_unique<Shock>(parameters, sample_rate, sampleCount(parameters, sample_rate));
 }
 
 }  // namespace vibro_impact::core

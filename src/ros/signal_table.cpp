@@ -27,7 +27,7 @@ void requireAtMost(std::uint64_t samples, std::uint64_t most, const std::string&
 }
 
 // What is said of each family besides the length.
-std::string about(const core::SineDwellParameters& parameters)
+std::string about(const core::SineDwellParameters& parameters, double /*sample_rate*/)
 {
   const std::vector<core::SineDwell> dwells = core::sineDwells(parameters);
   const auto [least, greatest] = std::minmax_element(dwells.begin(), dwells.end(),
@@ -37,20 +37,25 @@ std::string about(const core::SineDwellParameters& parameters)
               " s, amplitudes ", least->acceleration, " to ", greatest->acceleration, " m/s^2");
 }
 
-std::string about(const core::RandomParameters& parameters)
+std::string about(const core::RandomParameters& parameters, double /*sample_rate*/)
 {
   return text("\nroot mean square ", core::rootMeanSquare(parameters.spectrum), " m/s^2, seed ", parameters.seed);
 }
 
-std::string about(const core::ShockParameters& parameters)
+std::string about(const core::ShockParameters& parameters, double sample_rate)
 {
+  const std::string velocity =
+      parameters.shape == core::ShockShape::terminal_peak_sawtooth
+          ? text(core::velocityChange(parameters, sample_rate), " m/s; A T/2 is ", core::velocityChange(parameters),
+                 " m/s, the fall from the peak takes a sample")
+          : text(core::velocityChange(parameters), " m/s");
   return text("\n", parameters.repetitions,
               parameters.repetitions == 1 ? " pulse, which leaves" : " pulses, each of which leaves",
-              " the base with a velocity of ", core::velocityChange(parameters), " m/s");
+              " the base with a velocity of ", velocity);
 }
 
 template <typename Family>
-std::string about(const Family& /*parameters*/)
+std::string about(const Family& /*parameters*/, double /*sample_rate*/)
 {
   return {};
 }
@@ -99,7 +104,7 @@ std::string describeSignal(const ShakerParameters& parameters)
   const auto signal = core::makeDriveSignal(parameters.signal, parameters.sample_rate);
   return text(signal->samples(), " samples at ", signal->sampleRate(), " Hz, ",
               toClock(static_cast<double>(signal->samples()) * signal->samplePeriod())) +
-         std::visit([](const auto& family) { return about(family); }, parameters.signal) +
+         std::visit([&](const auto& family) { return about(family, parameters.sample_rate); }, parameters.signal) +
          (parameters.remark.empty() ? "" : "\n" + parameters.remark);
 }
 

@@ -102,6 +102,42 @@ TEST(Shock, leavesTheVelocityThatItSays)
   EXPECT_NEAR(velocityChange(sawtooth), 0.825, 1.0e-12);
   EXPECT_NEAR(velocity(generate(*makeDriveSignal(sawtooth, sample_rate)), 0, 6000),
               velocityChange(sawtooth) + 0.5 * 150.0 / sample_rate, 1.0e-9);
+  // The sums over the samples have closed forms, also where the end of the pulse lies between two of them.
+  for (const double duration : {0.011, 0.01104, 0.0011})
+  {
+    for (ShockParameters parameters : {half_sine, sawtooth})
+    {
+      parameters.duration = duration;
+      EXPECT_NEAR(velocity(generate(*makeDriveSignal(parameters, sample_rate)), 0, 6000),
+                  velocityChange(parameters, sample_rate), 1.0e-9)
+          << duration;
+    }
+  }
+  EXPECT_NEAR(velocityChange(sawtooth, sample_rate), 0.5 * 150.0 * (0.011 + 1.0 / sample_rate), 1.0e-12);
+}
+
+TEST(Shock, goesOnUntilItIsAtZeroAgain)
+{
+  // Nothing is asked for after the pulse, which ends at a sample or between two.
+  for (const double duration : {0.011, 0.01104})
+  {
+    ShockParameters parameters = shock(ShockShape::half_sine);
+    parameters.duration = duration;
+    parameters.repetitions = 2;
+    parameters.after = 0.0;
+    std::vector<double> samples = generate(*makeDriveSignal(parameters, sample_rate));
+    ASSERT_EQ(samples.size(), duration == 0.011 ? 11111u : 11112u);
+    EXPECT_NEAR(samples.back(), 0.0, 1.0e-9);
+    EXPECT_GT(*(samples.end() - 2), 1.0);
+    EXPECT_NEAR(velocity(samples, 0, samples.size() - 1), 2.0 * velocityChange(parameters, sample_rate), 1.0e-9);
+
+    parameters.shape = ShockShape::terminal_peak_sawtooth;
+    samples = generate(*makeDriveSignal(parameters, sample_rate));
+    ASSERT_EQ(samples.size(), 11112u);
+    EXPECT_EQ(samples.back(), 0.0);
+    EXPECT_NEAR(*(samples.end() - 2), 150.0 * 0.011 / duration, 1.0e-9) << "the peak, where it falls on a sample";
+    EXPECT_NEAR(velocity(samples, 0, samples.size() - 1), 2.0 * velocityChange(parameters, sample_rate), 1.0e-9);
+  }
 }
 
 TEST(Shock, mayGoTheOtherWay)

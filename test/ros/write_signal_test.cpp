@@ -32,6 +32,10 @@ TEST_F(WriteSignal, SaysWhatASignalIs)
   EXPECT_EQ(outcome.out, "500 samples at 1000 Hz, 0.5 s\n");
   outcome = run(CONFIG_DIRECTORY "/excitation/half_sine_shock.yaml");
   EXPECT_THAT(outcome.out, HasSubstr("3 pulses, each of which leaves the base with a velocity of 1.0504"));
+  EXPECT_THAT(outcome.out, testing::Not(HasSubstr("the fall")));
+  outcome = run(CONFIG_DIRECTORY "/excitation/terminal_peak_shock.yaml");
+  EXPECT_THAT(outcome.out,
+              HasSubstr("velocity of 0.8325 m/s; A T/2 is 0.825 m/s, the fall from the peak takes a sample"));
   outcome = run(CONFIG_DIRECTORY "/excitation/iec_60068_2_64_random.yaml");
   EXPECT_THAT(outcome.out, HasSubstr("root mean square 2.7167"));
   outcome = run(CONFIG_DIRECTORY "/excitation/mil_std_167_exploratory.yaml");
