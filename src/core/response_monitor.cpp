@@ -22,6 +22,10 @@ bool isSound(const SampleBlock& block)
   return block.sample_period > 0.0 &&
          block.sample_period * static_cast<double>(block.count) <= ResponseMonitor::longest;
 }
+StreamTime distance(StreamTime one, StreamTime other)
+{
+  return one < other ? other - one : one - other;
+}
 }  // namespace
 
 ResponseMonitor::ResponseMonitor(const MonitorOptions& options) : options_(options), histogram_(options.histogram)
@@ -36,17 +40,45 @@ void ResponseMonitor::addImpact(const ReleasedImpact& impact)
     ++refused_;
     return;
   }
-  if (!impacts_.empty() && impact.release < impacts_.back().release - max_step_back)
-  {
-    leaveImpacts();
-    impacts_stepped_back_ = true;
-  }
   impact_counter_.take(impact.number, 1);
-  late_impacts_ += reported_ && impact.release <= *reported_ && !impacts_stepped_back_ ? 1 : 0;
   peak_force_ = std::max(peak_force_, impact.peak_force);
+  const bool left_behind = isLeftBehind(impact);
+  const bool goes_back = last_impact_ && impact.release < last_impact_->release - max_step_back;
+  if (!left_behind && goes_back && !impacts_behind_)
+  {
+    if (started_ && impact.release < end_ - max_step_back)
+    {
+      ahead_.emplace_back();
+    }
+    else
+    {
+      leaveImpacts();  // the time of the force does not go back with it: it is what came before that was out of order
+    }
+  }
+  last_impact_ = impact;
+  if (left_behind)
+  {
+    ++late_impacts_;
+    total_.add(impact);
+    return;
+  }
+  impacts_behind_ = false;
+  if (!ahead_.empty())
+  {
+    ahead_.back().push_back(impact);
+    return;
+  }
+  late_impacts_ += reported_ && impact.release <= *reported_ ? 1 : 0;
   impacts_.push_back(impact);
   newest_release_ = impact.release;
-  fresh_ = fresh_ || !impacts_stepped_back_;
+  fresh_ = true;
+}
+
+bool ResponseMonitor::isLeftBehind(const ReleasedImpact& impact) const
+{
+  return impacts_behind_ && impact.number > last_impact_->number &&
+         impact.release >= last_impact_->release - max_step_back &&
+         distance(impact.release, left_end_) < distance(impact.release, end_);
 }
 
 void ResponseMonitor::addGap(const SampleBlock& gap)
@@ -76,10 +108,9 @@ void ResponseMonitor::addForce(const SampleBlock& force)
     return;
   }
   const bool another_stretch = started_ && (force.stamp < end_ - max_step_back || force.stamp > end_ + options_.window);
-  if (another_stretch && fresh_)
+  while (another_stretch && fresh_)
   {
-    report(end_);
-    stretch_reported_ = true;
+    closing_.push_back(report(std::min(next_report_, end_)));
   }
   if (!started_ || another_stretch)
   {
@@ -111,16 +142,19 @@ void ResponseMonitor::takeForce(const SampleBlock& force)
 
 const ResponseStatistics* ResponseMonitor::next(bool silent)
 {
-  if (std::exchange(stretch_reported_, false))
+  if (!closing_.empty())
   {
+    statistics_ = std::move(closing_.front());
+    closing_.pop_front();
     return &statistics_;
   }
   if (silent && fresh_ && started_)
   {
     return &report(std::min(next_report_, end_));
   }
-  const bool complete =
-      (newest_release_ && *newest_release_ > next_report_) || end_ - next_report_ >= options_.settling_time;
+  // Impacts are in order: when those of the next stretch come, all of this one have.
+  const bool complete = !ahead_.empty() || (newest_release_ && *newest_release_ > next_report_) ||
+                        end_ - next_report_ >= options_.settling_time;
   return started_ && next_report_ <= end_ && complete ? &report(next_report_) : nullptr;
 }
 
@@ -221,12 +255,16 @@ void ResponseMonitor::beginStretch(StreamTime stamp)
   if (started_ && stamp < end_)
   {
     ++steps_back_;
-    if (!impacts_stepped_back_)
+    leaveImpacts();
+    newest_release_.reset();
+    left_end_ = end_;
+    impacts_behind_ = ahead_.empty() && last_impact_;
+    if (!ahead_.empty())
     {
-      leaveImpacts();
-      newest_release_.reset();
+      impacts_ = std::move(ahead_.front());
+      ahead_.pop_front();
+      newest_release_ = impacts_.back().release;
     }
-    impacts_stepped_back_ = false;
     heard_.clear();
     contact_.clear();
     reported_.reset();

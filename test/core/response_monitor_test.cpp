@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -312,6 +313,122 @@ TEST_F(ResponseMonitorTest, timeThatGoesBackEmptiesTheWindowAndNotTheTotals)
   EXPECT_EQ(monitor_.lateImpacts(), 0u);
   // The window of the first report holds nothing of the first run.
   expectSums(again.front().sums, stream_, epoch, again.front().time);
+}
+
+/// Plays the stream `loops` times without a pause, as a looped bag does. The impacts of a block come before its force
+/// (a simulator's order), or `overtaken` blocks later than the force of theirs.
+std::vector<ResponseStatistics> playLoops(const Stream& stream, ResponseMonitor& monitor, int loops,
+                                          std::optional<std::size_t> overtaken)
+{
+  constexpr std::size_t block_size = 250;
+  const std::size_t blocks = stream.force.size() / block_size;
+  std::vector<std::vector<ReleasedImpact>> impacts(blocks);
+  for (const ReleasedImpact& impact : stream.impacts)
+  {
+    impacts.at(static_cast<std::size_t>((impact.release - epoch) / sample) / block_size).push_back(impact);
+  }
+  std::vector<ResponseStatistics> reports;
+  const std::size_t all = static_cast<std::size_t>(loops) * blocks;
+  const auto give = [&](std::size_t block)
+  {
+    for (const ReleasedImpact& impact : impacts[block % blocks])
+    {
+      monitor.addImpact(impact);
+    }
+  };
+  for (std::size_t i = 0; i < all; ++i)
+  {
+    if (!overtaken)
+    {
+      give(i);
+    }
+    monitor.addForce(stream.block(i % blocks * block_size, block_size));
+    while (const ResponseStatistics* report = monitor.next())
+    {
+      reports.push_back(*report);
+    }
+    if (overtaken && i >= *overtaken)
+    {
+      give(i - *overtaken);
+    }
+  }
+  for (std::size_t i = all - overtaken.value_or(0); i < all; ++i)
+  {
+    give(i);
+  }
+  while (const ResponseStatistics* report = monitor.next(true))
+  {
+    reports.push_back(*report);
+  }
+  return reports;
+}
+
+TEST_F(ResponseMonitorTest, aLoopIsTheSameWhetherItsImpactsOrItsForceComeFirst)
+{
+  // Also where the impacts cease long before the loop is over: for longer than a window, and than settling takes.
+  Stream quiet = stream_;
+  quiet.impacts.erase(std::find_if(quiet.impacts.begin(), quiet.impacts.end(),
+                                   [](const ReleasedImpact& impact) { return impact.release > epoch + 2 * second; }),
+                      quiet.impacts.end());
+  for (const Stream& stream : {stream_, quiet})
+  {
+    ResponseMonitor ahead(options());
+    const std::vector<ResponseStatistics> reports = playLoops(stream, ahead, 3, std::nullopt);
+    ResponseMonitor behind(options());
+    const std::vector<ResponseStatistics> expected = playLoops(stream, behind, 3, 0);
+    ASSERT_EQ(reports.size(), 90u);
+    ASSERT_EQ(expected.size(), 90u);
+    for (std::size_t i = 0; i < reports.size(); ++i)
+    {
+      const StreamTime time = epoch + static_cast<StreamTime>(i % 30 + 1) * second / 10;
+      EXPECT_EQ(reports[i].time, time);
+      expectSums(reports[i].sums, stream, time - second / 2, time);
+      EXPECT_EQ(expected[i].time, time);
+      EXPECT_EQ(expected[i].sums.impulse, reports[i].sums.impulse);
+      EXPECT_EQ(expected[i].impact_rate, reports[i].impact_rate);
+      EXPECT_EQ(expected[i].contact_duty, reports[i].contact_duty);
+      EXPECT_EQ(expected[i].total.impulse, reports[i].total.impulse);
+    }
+    for (const ResponseMonitor* monitor : {&ahead, &behind})
+    {
+      EXPECT_EQ(monitor->restarts(), 4u) << "of the impacts and of the blocks, twice";
+      EXPECT_EQ(monitor->lateImpacts(), 0u);
+      EXPECT_EQ(monitor->missing(), 0u);
+      const ImpactSums& total = monitor->statistics().total;
+      EXPECT_EQ(total.whole + total.cut_short, 3 * stream.impacts.size());
+    }
+  }
+}
+
+TEST_F(ResponseMonitorTest, impactsThatALoopLeavesBehindAreLateAndInTheTotals)
+{
+  const std::vector<ResponseStatistics> reports = playLoops(stream_, monitor_, 2, 4);
+  ASSERT_EQ(reports.size(), 60u);
+  const StreamTime last_blocks = epoch + 3 * second - 4 * 250 * sample;
+  EXPECT_EQ(monitor_.lateImpacts(), static_cast<std::uint64_t>(std::count_if(
+                                        stream_.impacts.begin(), stream_.impacts.end(),
+                                        [&](const ReleasedImpact& impact) { return impact.release >= last_blocks; })));
+  EXPECT_GT(monitor_.lateImpacts(), 0u);
+  for (std::size_t i = 30; i < 60; ++i)
+  {
+    expectSums(reports[i].sums, stream_, reports[i].time - second / 2, reports[i].time);
+  }
+  EXPECT_EQ(reports.back().total.whole + reports.back().total.cut_short, 2 * stream_.impacts.size());
+}
+
+TEST_F(ResponseMonitorTest, anImpactFromTheFutureStopsNothing)
+{
+  monitor_.addForce(stream_.block(0, 5000));
+  monitor_.addImpact(impactAt(0, epoch + 3600 * second, 1.0e-4, 1.0e-6));
+  for (std::uint64_t i = 1; i < 10; ++i)
+  {
+    monitor_.addImpact(impactAt(i, epoch + second / 10 + static_cast<StreamTime>(i) * second / 100, 1.0e-4, 1.0e-6));
+  }
+  monitor_.addForce(stream_.block(5000, 5000));
+  const ResponseStatistics* report = lastOf(monitor_);
+  ASSERT_NE(report, nullptr);
+  EXPECT_EQ(report->sums.whole, 9u);
+  EXPECT_EQ(report->total.whole, 10u);
 }
 
 TEST_F(ResponseMonitorTest, aMotionThatBeginsAnewLosesNothing)

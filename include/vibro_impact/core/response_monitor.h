@@ -38,8 +38,10 @@ struct MonitorOptions
 /// statistics.
 ///
 /// Where time goes back or leaves out more than a window, another stretch of time begins, with instants of its own.
-/// Back: the window is emptied, the totals go on. What no simulator says (numbers that are not finite, a sample period
-/// of no stream) is refused and counted.
+/// Back: the window is emptied, the totals go on. Impacts and force may each be the first to go back: impacts of the
+/// stretch that is to come wait for its first block, and those of the last one that come after it are late.
+///
+/// What no simulator says (numbers that are not finite, a sample period of no stream) is refused and counted.
 class ResponseMonitor
 {
 public:
@@ -127,6 +129,8 @@ private:
   const ResponseStatistics& report(StreamTime time);
   void sumUp(StreamTime from);
   int period() const;
+  /// Whether time has gone back since, to be told by the force alone so far: such an impact is late.
+  bool isLeftBehind(const ReleasedImpact& impact) const;
   /// The impacts before are of another stretch of time: in the totals, but in no window.
   void leaveImpacts();
   void beginStretch(StreamTime stamp);
@@ -143,10 +147,13 @@ private:
   double smallest_gap_ = std::numeric_limits<double>::infinity();
   double peak_force_ = 0.0;
 
-  std::deque<ReleasedImpact> impacts_;        ///< in order of release: those of the window, and those yet to be counted
-  std::size_t counted_ = 0;                   ///< of them, in `total_`
-  bool impacts_stepped_back_ = false;         ///< before the blocks did
-  std::optional<StreamTime> newest_release_;  ///< of the impacts since time went back
+  std::deque<ReleasedImpact> impacts_;  ///< in order of release: those of the window, and those yet to be counted
+  std::size_t counted_ = 0;             ///< of them, in `total_`
+  std::deque<std::deque<ReleasedImpact>> ahead_;  ///< of the next stretches, whose blocks are still to come
+  std::optional<ReleasedImpact> last_impact_;     ///< of whatever stretch
+  bool impacts_behind_ = false;                   ///< time went back, and the impacts have not followed yet
+  StreamTime left_end_ = 0;                       ///< end of the stretch from which it went back
+  std::optional<StreamTime> newest_release_;      ///< of the impacts of this stretch
   ImpactSums total_;
 
   bool started_ = false;
@@ -157,8 +164,8 @@ private:
   StreamTime total_contact_ = 0;
   StreamTime next_report_ = 0;
   std::optional<StreamTime> reported_;
-  bool fresh_ = false;             ///< something came since the last statistics
-  bool stretch_reported_ = false;  ///< and not yet given away
+  bool fresh_ = false;                      ///< something came since the last statistics
+  std::deque<ResponseStatistics> closing_;  ///< those up to the end of the last stretch, not yet given away
   ResponseStatistics statistics_;
 };
 
