@@ -205,10 +205,12 @@ void ResponseMonitor::sumUp(StreamTime from)
   }
   statistics_.histogram = histogram_.counts();
   const StreamTime heard = heard_.covered(from, statistics_.time);
-  const auto by_time = [heard](double sum) { return heard > 0 ? sum / seconds(heard) : 0.0; };
   statistics_.window = seconds(heard);
+  statistics_.contact_duty = heard > 0 ? seconds(contact_.covered(from, statistics_.time)) / statistics_.window : 0.0;
+  // Impacts are heard of also where samples of the force are missing: their sums are over all of the window.
+  const StreamTime length = statistics_.time - std::max(from, stretch_begin_);
+  const auto by_time = [length](double sum) { return length > 0 ? sum / seconds(length) : 0.0; };
   statistics_.impact_rate = by_time(static_cast<double>(sums.whole));
-  statistics_.contact_duty = by_time(seconds(contact_.covered(from, statistics_.time)));
   statistics_.mean_force = by_time(sums.impulse);
   statistics_.impact_power = by_time(sums.energy_lost);
   statistics_.normal_work_rate = by_time(options_.wear.normalWork(sums));
@@ -270,6 +272,7 @@ void ResponseMonitor::beginStretch(StreamTime stamp)
     reported_.reset();
   }
   started_ = true;
+  stretch_begin_ = stamp;
   end_ = stamp;
   next_report_ = stamp + options_.report_period;
 }

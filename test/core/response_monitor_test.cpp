@@ -287,14 +287,22 @@ TEST_F(ResponseMonitorTest, whatIsMissingIsCountedAndNotHeard)
   monitor_.addForce(stream_.block(0, 5000));
   monitor_.addForce(stream_.block(7500, 2500));
   monitor_.addImpact(impactAt(0, epoch + second / 100, 1.0e-4, 1.0e-6));
-  monitor_.addImpact(impactAt(3, epoch + second / 50, 1.0e-4, 1.0e-6));
+  // In the gap of the force: it was heard of all the same.
+  monitor_.addImpact(impactAt(3, epoch + second / 8, 1.0e-4, 1.0e-6));
   const ResponseStatistics* report = lastOf(monitor_);
   ASSERT_NE(report, nullptr);
   EXPECT_EQ(monitor_.forceSamples().missing(), 2500u);
   EXPECT_EQ(monitor_.impacts().missing(), 2u);
   EXPECT_EQ(monitor_.missing(), 2502u);
   EXPECT_NEAR(report->window, 0.15, 1.0e-12);
-  EXPECT_NEAR(report->impact_rate, 2.0 / 0.15, 1.0e-9);
+  EXPECT_DOUBLE_EQ(report->impact_rate, 2.0 / 0.2);
+  EXPECT_DOUBLE_EQ(report->mean_force, 2.0e-6 / 0.2);
+  EXPECT_NEAR(report->contact_duty,
+              (contactTime(stream_, epoch, epoch + second / 10) +
+               contactTime(stream_, epoch + 3 * second / 20, epoch + second / 5)) /
+                  0.15,
+              1.0e-12)
+      << "of what was heard of the force";
   EXPECT_EQ(monitor_.next(true), nullptr) << "nothing has come since";
 }
 
@@ -361,6 +369,30 @@ std::vector<ResponseStatistics> playLoops(const Stream& stream, ResponseMonitor&
     reports.push_back(*report);
   }
   return reports;
+}
+
+TEST_F(ResponseMonitorTest, lostBlocksOfForceChangeNoRate)
+{
+  const ResponseStatistics all = play(stream_, monitor_, 250).back();
+  ResponseMonitor deaf(options());
+  for (const ReleasedImpact& impact : stream_.impacts)
+  {
+    deaf.addImpact(impact);
+  }
+  for (std::size_t from = 250; from < stream_.force.size(); from += 500)
+  {
+    deaf.addForce(stream_.block(from, 250));
+  }
+  const ResponseStatistics* half = lastOf(deaf);
+  ASSERT_NE(half, nullptr);
+  EXPECT_EQ(half->time, all.time);
+  EXPECT_NEAR(half->window, 0.25, 1.0e-12);
+  EXPECT_EQ(half->impact_rate, all.impact_rate);
+  EXPECT_EQ(half->mean_force, all.mean_force);
+  EXPECT_EQ(half->impact_power, all.impact_power);
+  EXPECT_EQ(half->normal_work_rate, all.normal_work_rate);
+  EXPECT_EQ(half->wear_rate, all.wear_rate);
+  EXPECT_NEAR(half->contact_duty, all.contact_duty, 0.3 * all.contact_duty);
 }
 
 TEST_F(ResponseMonitorTest, aLoopIsTheSameWhetherItsImpactsOrItsForceComeFirst)

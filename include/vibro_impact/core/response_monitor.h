@@ -159,6 +159,7 @@ private:
   bool started_ = false;
   TimeIntervals heard_;
   TimeIntervals contact_;
+  StreamTime stretch_begin_ = 0;
   StreamTime end_ = 0;  ///< of the last block
   StreamTime total_heard_ = 0;
   StreamTime total_contact_ = 0;

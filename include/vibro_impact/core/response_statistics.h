@@ -12,7 +12,7 @@ namespace vibro_impact::core
 struct ResponseStatistics
 {
   StreamTime time = 0;
-  double window = 0.0;                   ///< time of the window that was heard, s
+  double window = 0.0;                   ///< time of the window whose samples were heard, s
   ImpactSums sums;                       ///< of the impacts released in the window
   std::vector<std::uint64_t> histogram;  ///< of their impulses, as ImpulseHistogram counts
   double impact_rate = 0.0;              ///< whole impacts, 1/s
