@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,11 +18,16 @@ bool isSound(const ReleasedImpact& impact)
          impact.duration >= 0.0 && impact.duration <= ResponseMonitor::longest;
 }
 
+// Written so that NaN fails, too.
 bool isSound(const SampleBlock& block)
 {
-  return block.sample_period > 0.0 &&
-         block.sample_period * static_cast<double>(block.count) <= ResponseMonitor::longest;
+  const double duration = block.sample_period * static_cast<double>(block.count);
+  return block.sample_period >= min_sample_period && block.sample_period <= max_sample_period &&
+         seconds(block.stamp) + duration < end_of_time &&
+         block.seq <= std::numeric_limits<std::uint64_t>::max() - block.count &&
+         std::all_of(block.values, block.values + block.count, [](double value) { return std::isfinite(value); });
 }
+
 StreamTime distance(StreamTime one, StreamTime other)
 {
   return one < other ? other - one : one - other;
@@ -83,6 +89,11 @@ bool ResponseMonitor::isLeftBehind(const ReleasedImpact& impact) const
 
 void ResponseMonitor::addGap(const SampleBlock& gap)
 {
+  if (!isSound(gap))
+  {
+    ++refused_;
+    return;
+  }
   gap_samples_.take(gap.seq, gap.count);
   for (std::size_t i = 0; i < gap.count; ++i)
   {
@@ -102,7 +113,9 @@ void ResponseMonitor::addExcitation(const SampleBlock& acceleration)
 
 void ResponseMonitor::addForce(const SampleBlock& force)
 {
-  if (!isSound(force))
+  const double report_periods =
+      force.sample_period * static_cast<double>(force.count) / seconds(options_.report_period);
+  if (!isSound(force) || report_periods > most_reports_per_block)
   {
     ++refused_;
     return;

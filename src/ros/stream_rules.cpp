@@ -10,9 +10,6 @@ namespace vibro_impact::graph
 {
 namespace
 {
-/// Where ros::Time ends, s.
-constexpr double end_of_time = 4294967295.0;
-
 Verdict refuse(const std::string& reason)
 {
   return {Verdict::Action::Refuse, 0, reason};
@@ -49,7 +46,7 @@ std::string StreamRules::fault(const Samples& block) const
     return "header.stamp is zero, must be the time of the first sample";
   }
   if (1.0e-9 * static_cast<double>(block.stamp) + static_cast<double>(block.values.size()) * block.sample_period >=
-      end_of_time)
+      core::end_of_time)
   {
     return text("header.stamp is ", 1.0e-9 * static_cast<double>(block.stamp), " s, so that the block of ",
                 block.values.size(), " samples ends beyond the range of time stamps");

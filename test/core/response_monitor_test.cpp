@@ -536,6 +536,57 @@ TEST_F(ResponseMonitorTest, whatNoSimulatorSaysIsRefused)
   EXPECT_EQ(monitor_.impacts().taken(), 0u);
 }
 
+TEST_F(ResponseMonitorTest, aBlockOfNoSimulatorIsRefused)
+{
+  const std::vector<double> zeros(100);
+  const auto refused = [&](const SampleBlock& block)
+  {
+    const std::uint64_t before = monitor_.refused();
+    monitor_.addForce(block);
+    monitor_.addGap(block);
+    monitor_.addExcitation(block);
+    return monitor_.refused() - before;
+  };
+  for (const double period : {0.0, -1.0e-5, 9.9e-10, 1.001e3, 1.0e6})
+  {
+    EXPECT_EQ(refused({0, epoch, period, zeros.data(), 1}), 3u) << period;
+  }
+  const StreamTime last_second = 4'294'967'294 * second;
+  EXPECT_EQ(refused({0, last_second + second, 1.0, zeros.data(), 1}), 3u) << "a stamp that no later one can follow";
+  EXPECT_EQ(refused({0, last_second, 1.0e-2, zeros.data(), 100}), 3u) << "ends where time does";
+  EXPECT_EQ(refused({std::numeric_limits<std::uint64_t>::max() - 50, epoch, 1.0e-3, zeros.data(), 100}), 3u);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()})
+  {
+    std::vector<double> values = zeros;
+    values[99] = bad;
+    EXPECT_EQ(refused({0, epoch, 1.0e-3, values.data(), values.size()}), 3u) << bad;
+  }
+  EXPECT_EQ(monitor_.next(true), nullptr);
+  EXPECT_EQ(monitor_.forceSamples().taken() + monitor_.gapSamples().taken(), 0u);
+  EXPECT_EQ(monitor_.smallestGap(), std::numeric_limits<double>::infinity());
+
+  // The last ones that are good.
+  EXPECT_EQ(refused({0, last_second, 1.0e-3, zeros.data(), 100}), 0u);
+  EXPECT_EQ(refused({0, epoch, 1.0e-9, zeros.data(), 100}), 0u);
+}
+
+TEST_F(ResponseMonitorTest, aBlockOfMoreReportsThanAnybodyCouldWantIsRefused)
+{
+  // 0.1 s from report to report.
+  const std::vector<double> zeros(100);
+  monitor_.addForce({0, epoch, 10.1, zeros.data(), 100});
+  EXPECT_EQ(monitor_.refused(), 1u);
+  EXPECT_EQ(monitor_.next(true), nullptr);
+  monitor_.addForce({0, epoch, 9.99, zeros.data(), 100});
+  EXPECT_EQ(monitor_.refused(), 1u);
+  std::size_t reports = 0;
+  while (monitor_.next(true) != nullptr)
+  {
+    ++reports;
+  }
+  EXPECT_EQ(reports, 9990u);
+}
+
 TEST(ArchardWear, slidesAtASpeedOrOverADistance)
 {
   ImpactSums sums;

@@ -191,6 +191,29 @@ TEST_F(MonitorDiagnosticsTest, warnsOnceOfWhatNoSimulatorSays)
   EXPECT_EQ(report(), DiagnosticStatus::OK);
 }
 
+TEST_F(MonitorDiagnosticsTest, survivesABlockThatNoSimulatorSends)
+{
+  vibro_impact::ContactForce force;
+  force.header.stamp = ros::Time(4294967295, 0);  // the last second that a stamp can hold
+  force.sample_period = 1.0;
+  force.force = {0.0};
+  monitor_.addForce(toBlock(force));
+  force.header.stamp = vibro_impact::graph::toTime(start);
+  force.sample_period = 1.0e6;
+  monitor_.addForce(toBlock(force));
+  EXPECT_EQ(report(), DiagnosticStatus::WARN);
+  EXPECT_EQ(value_["Messages refused"], "2");
+  EXPECT_EQ(value_["Samples of force"], "0");
+  // The latest statistics that can be become a message.
+  force.header.stamp = ros::Time(4294967293, 0);
+  force.sample_period = 1.0;
+  monitor_.addForce(toBlock(force));
+  EXPECT_EQ(report(), DiagnosticStatus::OK);
+  vibro_impact::ImpactStatistics message;
+  toMessage(monitor_, 0, message);
+  EXPECT_EQ(message.header.stamp, ros::Time(4294967294, 0));
+}
+
 TEST(MonitorMessages, theStatisticsSayWhatTheMonitorSays)
 {
   core::MonitorOptions options;

@@ -41,14 +41,18 @@ struct MonitorOptions
 /// Back: the window is emptied, the totals go on. Impacts and force may each be the first to go back: impacts of the
 /// stretch that is to come wait for its first block, and those of the last one that come after it are late.
 ///
-/// What no simulator says (numbers that are not finite, a sample period of no stream) is refused and counted.
+/// What no simulator says is refused and counted: numbers that are not finite, a sample period outside of
+/// [min_sample_period, max_sample_period], a block that ends at end_of_time or later; and a block of force with more
+/// than `most_reports_per_block` report periods, all of whose statistics would be due at once.
 class ResponseMonitor
 {
 public:
   /// Stamps may go back by this much and are still those of the same stream, ns.
   static constexpr StreamTime max_step_back = 100'000'000;
-  /// Longest sample period, duration of a block and of an impact, s.
+  /// Longest duration of an impact, s.
   static constexpr double longest = 1.0e6;
+  /// Report periods in a block of force.
+  static constexpr double most_reports_per_block = 10000.0;
   /// Impacts that are looked at for a period.
   static constexpr std::size_t period_impacts = 1000;
 

@@ -7,6 +7,13 @@
 
 namespace vibro_impact::core
 {
+/// Stamps resolve a nanosecond, so that a shorter period cannot be dated, s.
+constexpr double min_sample_period = 1.0e-9;
+/// s
+constexpr double max_sample_period = 1.0e3;
+/// Where the stamps of a stream end, s: 2^32 - 1.
+constexpr double end_of_time = 4294967295.0;
+
 /// Equally spaced samples that somebody else holds.
 struct SampleBlock
 {

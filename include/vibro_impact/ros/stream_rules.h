@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "vibro_impact/core/sample_block.h"
 #include "vibro_impact/ros/sample_clock.h"
 #include "vibro_impact/ros/samples.h"
 
@@ -44,10 +45,10 @@ class StreamRules
 public:
   /// More samples than this make no block. (200 s at 50 kHz.)
   static constexpr std::size_t max_block_samples = 10'000'000;
-  /// Stamps resolve a nanosecond, so that a shorter period cannot be dated, s.
-  static constexpr double min_sample_period = 1.0e-9;
   /// s
-  static constexpr double max_sample_period = 1.0e3;
+  static constexpr double min_sample_period = core::min_sample_period;
+  /// s
+  static constexpr double max_sample_period = core::max_sample_period;
 
   explicit StreamRules(const StreamLimits& limits);
 
