@@ -143,7 +143,8 @@ void ResponseMonitor::takeForce(const SampleBlock& force)
   total_heard_ += instant(force.count) - instant(0);
   for (std::size_t i = 0; i < force.count; ++i)
   {
-    if (force.values[i] > 0.0)
+    // A conjoined basis can pull: that is a contact, too.
+    if (force.values[i] != 0.0)
     {
       contact_.add(instant(i), instant(i + 1));
       total_contact_ += instant(i + 1) - instant(i);

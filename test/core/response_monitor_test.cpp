@@ -587,6 +587,16 @@ TEST_F(ResponseMonitorTest, aBlockOfMoreReportsThanAnybodyCouldWantIsRefused)
   EXPECT_EQ(reports, 9990u);
 }
 
+TEST_F(ResponseMonitorTest, aForceThatPullsIsAContact)
+{
+  const std::vector<double> force = {0.0, 2.0, -1.0, 0.0};
+  monitor_.addForce({0, epoch, 0.01, force.data(), force.size()});
+  const ResponseStatistics* report = lastOf(monitor_);
+  ASSERT_NE(report, nullptr);
+  EXPECT_DOUBLE_EQ(report->contact_duty, 0.5);
+  EXPECT_DOUBLE_EQ(report->total_contact_time, 0.02);
+}
+
 TEST(ArchardWear, slidesAtASpeedOrOverADistance)
 {
   ImpactSums sums;

@@ -191,7 +191,7 @@ class MonitorTest(NodeProcessTest):
                 self.near(statistics.impact_power, energy / window)
                 self.near(statistics.normal_work_rate, 0.5 * impulse / window)
                 self.near(statistics.wear_rate, 1.0e-3 * 0.5 * impulse / window)
-                self.near(statistics.contact_duty, sum(force > 0.0 for force in forces[first:samples]) * PERIOD / window)
+                self.near(statistics.contact_duty, sum(force != 0.0 for force in forces[first:samples]) * PERIOD / window)
             else:
                 self.assertEqual((statistics.total_impacts, statistics.total_cut_short), (len(whole), len(heard) - len(whole)))
                 self.assertEqual(statistics.total_impulse, impulse)
@@ -200,7 +200,7 @@ class MonitorTest(NodeProcessTest):
                 self.assertEqual(statistics.wear_volume, 1.0e-3 * (0.5 * impulse))
                 self.assertEqual(statistics.wear_depth, 1.0e-3 * (0.5 * impulse) / 1.0e-6)
                 self.near(statistics.total_time, samples * PERIOD)
-                self.near(statistics.total_contact_time, sum(force > 0.0 for force in forces[:samples]) * PERIOD)
+                self.near(statistics.total_contact_time, sum(force != 0.0 for force in forces[:samples]) * PERIOD)
 
     def near(self, value, expected):
         self.assertAlmostEqual(value, expected, delta=1.0e-12 * abs(expected))
