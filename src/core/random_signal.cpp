@@ -22,6 +22,10 @@ namespace
 constexpr double lines_to_lowest = 16.0;
 constexpr double lines_between_points = 4.0;
 
+// How much the density may change from line to line: Hann's window, a weighted mean of three lines, then takes half a
+// decibel off a corner.
+constexpr double decibels_per_line = 2.0;
+
 // Taps of the longest filter, a power of two: a second of it takes a tenth of one to compute.
 constexpr std::size_t most_taps = std::size_t{1} << 20;
 
@@ -31,12 +35,20 @@ double slope(const SpectrumPoint& from, const SpectrumPoint& to)
   return std::log(to.density / from.density) / std::log(to.frequency / from.frequency);
 }
 
+// Lines so far apart, in Hz, that the density changes by decibels_per_line from one to the next; at the lower break
+// point, where a power law is steepest. Infinite for a density that is constant.
+double lineDistance(const SpectrumPoint& from, const SpectrumPoint& to)
+{
+  return 0.1 * std::log(10.0) * decibels_per_line * from.frequency / std::abs(slope(from, to));
+}
+
 std::size_t tapCount(const std::vector<SpectrumPoint>& spectrum, double sample_rate)
 {
   double resolution = spectrum.front().frequency / lines_to_lowest;
   for (std::size_t i = 1; i < spectrum.size(); ++i)
   {
     resolution = std::min(resolution, (spectrum[i].frequency - spectrum[i - 1].frequency) / lines_between_points);
+    resolution = std::min(resolution, lineDistance(spectrum[i - 1], spectrum[i]));
   }
   std::size_t count = 2;
   while (static_cast<double>(count) * resolution < sample_rate && count < 2 * most_taps)
@@ -192,6 +204,15 @@ bool checkSpectrum(const std::vector<SpectrumPoint>& spectrum, DriveFaults& faul
     const double least = spectrum[i - 1].frequency + lines_between_points * finest;
     faults.check(spectrum[i].frequency >= least, "spectrum[" + std::to_string(i) + "].frequency", spectrum[i].frequency,
                  "at least " + text(least, 9) + " at this sample rate (Hz)");
+    const SpectrumPoint& from = spectrum[i - 1];
+    const double distance = lineDistance(from, spectrum[i]);
+    if (distance < finest)
+    {
+      const double most = std::exp(distance / finest * std::abs(std::log(spectrum[i].density / from.density)));
+      faults.check(false, "spectrum[" + std::to_string(i) + "].density", spectrum[i].density,
+                   "from " + text(from.density / most, 6) + " to " + text(from.density * most, 6) +
+                       " at this sample rate ((m/s^2)^2/Hz)");
+    }
   }
   return false;
 }

@@ -16,9 +16,9 @@ struct SpectrumPoint
 /// to the next, and nothing beyond the first and the last.
 ///
 /// White noise goes through a filter whose response has the root of the spectrum, at a resolution that is at least
-/// sixteen times finer than the lowest frequency and four times finer than the distance of two break points. The
-/// spectrum is met from the first break point to the last; within three lines of the resolution beyond them it falls
-/// to nothing. No value is clipped.
+/// sixteen times finer than the lowest frequency and four times finer than the distance of two break points, and so
+/// fine that the density changes by at most 2 dB from line to line. From the first break point to the last the spectrum
+/// is met within 1 dB; within three lines of the resolution beyond them it falls to nothing. No value is clipped.
 struct RandomParameters
 {
   std::vector<SpectrumPoint> spectrum;  ///< by ascending frequency, at least two
