@@ -50,12 +50,12 @@ ShakerParameters parseShakerParameters(const XmlRpc::XmlRpcValue& tree, const st
     parameters.remark = std::move(signal.remark);
     signal_faults = std::move(signal.faults);
   }
-  parameters.block_rate = reader.number("block_rate", parameters.block_rate);
   const bool has_rate = std::isfinite(parameters.sample_rate) && parameters.sample_rate > 0.0;
   const double rate = has_rate ? parameters.sample_rate : highest_rate;
   const double least = rate / most_samples_per_block;
   // Whoever plays a slow recording need not know how slow: its blocks have one sample then.
   const double most = recorded ? highest_rate : rate;
+  parameters.block_rate = reader.number("block_rate", std::clamp(parameters.block_rate, least, rate));
   if (!(parameters.block_rate >= least && parameters.block_rate <= most))
   {
     reader.reject("block_rate", "a number from " + config::formatNumber(least) + " to " + config::formatNumber(most) +

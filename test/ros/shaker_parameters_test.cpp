@@ -87,6 +87,26 @@ TEST(ShakerParameters, haveDefaults)
   EXPECT_EQ(signal.rest, 0.0);
 }
 
+TEST(ShakerParameters, takeABlockForEverySampleOfASlowSignal)
+{
+  XmlRpcValue tree;
+  tree["sample_rate"] = 100.0;
+  tree["signal"]["type"] = "sine";
+  tree["signal"]["acceleration"] = 1.0;
+  tree["signal"]["frequency"] = 5.0;
+  tree["signal"]["cycles"] = 10.0;
+  const ShakerParameters parameters = parseShakerParameters(tree, "/shaker");
+  EXPECT_EQ(parameters.block_rate, 100.0);
+  EXPECT_EQ(parameters.samplesPerBlock(), 1u);
+  // One that is given is not to be beyond it.
+  tree["block_rate"] = 200.0;
+  EXPECT_EQ(complaint(tree), "/shaker: block_rate = 200: must be a number from 0.0001 to 100, the sample rate (Hz)");
+  // Nor has a fast signal blocks that are too long.
+  tree = steppedSine();
+  tree["sample_rate"] = 1.0e9;
+  EXPECT_EQ(parseShakerParameters(tree, "/shaker").block_rate, 1000.0);
+}
+
 TEST(ShakerParameters, takeATextThatIsWhollyANumber)
 {
   XmlRpcValue tree = steppedSine();

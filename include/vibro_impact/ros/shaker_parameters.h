@@ -16,7 +16,7 @@ struct ShakerParameters
   core::DriveParameters signal;              ///< signal: {type, acceleration, ...}
   double sample_rate = 50000.0;              ///< Hz; of a recorded signal its own
   std::string remark;                        ///< what there is to say of a recorded signal; empty: nothing
-  double block_rate = 200.0;                 ///< blocks per second of stream time, Hz
+  double block_rate = 200.0;                 ///< blocks per second of stream time, Hz; at most sample_rate if not given
   double speed = 1.0;                        ///< stream time over wall time; 0: as fast as the blocks are answered
   std::uint32_t max_blocks_ahead = 0;        ///< most blocks without an answer by the simulator; 0: no answers expected
   std::uint32_t wait_for_subscribers = 0;    ///< nothing is published before there are so many
