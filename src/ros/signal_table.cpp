@@ -18,6 +18,9 @@ namespace
 constexpr std::uint64_t most_samples = 200'000'000;
 constexpr std::uint64_t most_rows = 50'000'000;
 
+// A time that is beside a sample by no more than rounding means it, in samples.
+constexpr double sample_tolerance = 1.0e-6;
+
 void requireAtMost(std::uint64_t samples, std::uint64_t most, const std::string& advice)
 {
   if (samples > most)
@@ -77,8 +80,8 @@ std::string signalTable(const ShakerParameters& parameters, double from, double 
 {
   const auto signal = core::makeDriveSignal(parameters.signal, parameters.sample_rate);
   const auto samples = static_cast<double>(signal->samples());
-  const double begin = std::clamp(std::ceil(from * signal->sampleRate()), 0.0, samples);
-  const double end = std::clamp(std::floor(to * signal->sampleRate()) + 1.0, begin, samples);
+  const double begin = std::clamp(std::ceil(from * signal->sampleRate() - sample_tolerance), 0.0, samples);
+  const double end = std::clamp(std::floor(to * signal->sampleRate() + sample_tolerance) + 1.0, begin, samples);
   const auto first = static_cast<std::uint64_t>(begin);
   const auto count = static_cast<std::uint64_t>(end - begin);
   if (count == 0)

@@ -60,6 +60,17 @@ TEST_F(WriteSignal, WritesATableThatReadsBack)
   EXPECT_EQ(part.acceleration[7], whole.acceleration[107]);
 }
 
+TEST_F(WriteSignal, TakesTheSamplesThatTheTimesName)
+{
+  // 0.07 s * 100 Hz is a little more than 7, 0.29 s * 100 Hz a little less than 29.
+  const std::string coarse = directory_.file(
+      "coarse.yaml", "{sample_rate: 100, signal: {type: sine, acceleration: 2, frequency: 10, cycles: 5}}");
+  ASSERT_EQ(run(coarse + " --from 0.07 --to 0.29 --out " + results()).status, 0);
+  const auto part = vibro_impact::config::readExcitation(results() + "/signal.csv");
+  EXPECT_NEAR(part.start, 0.07, 1.0e-15);
+  EXPECT_EQ(part.acceleration.size(), 23u);
+}
+
 TEST_F(WriteSignal, RefusesWhatItCannotWrite)
 {
   expectRefusal("--out " + results(), 2, "0 signal files are given: must be one");
