@@ -42,7 +42,11 @@ std::optional<XmlRpc::XmlRpcValue> optionalMap(ParameterReader& reader, const st
 
 void readWindow(ParameterReader& reader, core::MonitorOptions& options)
 {
+  // All three before any is judged: a key that nobody has asked for counts as unknown.
   const double window = reader.number("window", core::seconds(options.window));
+  const double period = reader.number("report_period", core::seconds(options.report_period));
+  const double settling_time =
+      reader.nonNegative("settling_time", core::seconds(options.settling_time), longest_wait, " (s)");
   if (!(window >= shortest_window && window <= longest_window))
   {
     reader.reject("window", "a number >= " + config::formatNumber(shortest_window) +
@@ -50,7 +54,6 @@ void readWindow(ParameterReader& reader, core::MonitorOptions& options)
     return;
   }
   const double shortest = window / most_reports_in_window;
-  const double period = reader.number("report_period", core::seconds(options.report_period));
   if (!(period >= shortest && period <= longest_wait))
   {
     reader.reject("report_period", config::formatNumber(period),
@@ -60,8 +63,7 @@ void readWindow(ParameterReader& reader, core::MonitorOptions& options)
   }
   options.window = core::nanoseconds(window);
   options.report_period = core::nanoseconds(period);
-  options.settling_time = core::nanoseconds(
-      reader.nonNegative("settling_time", core::seconds(options.settling_time), longest_wait, " (s)"));
+  options.settling_time = core::nanoseconds(settling_time);
 }
 
 core::ImpulseHistogram readHistogram(const XmlRpc::XmlRpcValue& map, Faults& faults)

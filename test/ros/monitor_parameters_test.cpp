@@ -111,6 +111,19 @@ TEST(MonitorParameters, everyFaultIsNamedAtOnce)
   }
 }
 
+TEST(MonitorParameters, aFaultMakesNoOtherKeyUnknown)
+{
+  XmlRpcValue tree;
+  tree["window"] = 0;
+  tree["report_period"] = 0.2;
+  tree["settling_time"] = 0.5;
+  EXPECT_EQ(faultsOf(tree), "/monitor: window = 0: must be a number >= 0.001 and <= 600 (s)");
+  tree["window"] = 1;
+  tree["report_period"] = 0.001;
+  EXPECT_EQ(faultsOf(tree),
+            "/monitor: report_period = 0.001: must be a number >= 0.01, a hundredth of window, and <= 3600 (s)");
+}
+
 TEST(MonitorParameters, slidingIsSaidInOneWay)
 {
   XmlRpcValue tree = goodTree();
