@@ -175,6 +175,7 @@ const ResponseStatistics* ResponseMonitor::next(bool silent)
 const ResponseStatistics& ResponseMonitor::report(StreamTime time)
 {
   statistics_.time = time;
+  statistics_.stretch = stretch_;
   for (; counted_ < impacts_.size() && impacts_[counted_].release <= time; ++counted_)
   {
     total_.add(impacts_[counted_]);
@@ -286,6 +287,7 @@ void ResponseMonitor::beginStretch(StreamTime stamp)
     reported_.reset();
   }
   started_ = true;
+  ++stretch_;
   stretch_begin_ = stamp;
   end_ = stamp;
   next_report_ = stamp + options_.report_period;

@@ -1,6 +1,7 @@
 #include "vibro_impact/ros/monitor_messages.h"
 
 #include <string>
+#include <utility>
 
 #include "text.h"
 #include "vibro_impact/ros/conversions.h"
@@ -117,9 +118,14 @@ bool AlarmPanel::update(const core::ResponseStatistics& statistics)
 {
   const bool first = message_.header.stamp.isZero();
   bool changed = false;
+  const bool another_stretch = std::exchange(stretch_, statistics.stretch) != statistics.stretch;
   for (std::size_t i = 0; i < watched_.size(); ++i)
   {
     Alarm& alarm = message_.alarms[i];
+    if (another_stretch)
+    {
+      watched_[i].alarm.beginStretch();
+    }
     const double value = watched_[i].quantity->value(statistics);
     const bool turned = watched_[i].alarm.update(statistics.time, value);
     if (!turned && !first)

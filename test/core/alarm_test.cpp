@@ -68,6 +68,21 @@ TEST(Alarm, aDelayBeginsAnewWhereTimeGoesBack)
   EXPECT_TRUE(alarm.update(150, 11.0));
 }
 
+TEST(Alarm, aDelayBeginsAnewWithAnotherStretchOfTime)
+{
+  Alarm alarm({10.0, 5.0, 100, 100});
+  EXPECT_FALSE(alarm.update(0, 11.0));
+  alarm.beginStretch();
+  EXPECT_FALSE(alarm.update(3600, 11.0));
+  EXPECT_FALSE(alarm.update(3699, 11.0));
+  EXPECT_TRUE(alarm.update(3700, 11.0));
+  EXPECT_FALSE(alarm.update(3800, 4.0));
+  alarm.beginStretch();
+  EXPECT_TRUE(alarm.active());
+  EXPECT_FALSE(alarm.update(7200, 4.0));
+  EXPECT_TRUE(alarm.update(7300, 4.0));
+}
+
 TEST(Alarm, whatIsNoNumberIsBeyondNoLimit)
 {
   EXPECT_EQ(follow({10.0, 5.0}, {nan, 11.0, nan, 4.0}), (std::vector<bool>{false, true, true, false}));

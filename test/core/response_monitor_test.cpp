@@ -414,6 +414,7 @@ TEST_F(ResponseMonitorTest, aLoopIsTheSameWhetherItsImpactsOrItsForceComeFirst)
     {
       const StreamTime time = epoch + static_cast<StreamTime>(i % 30 + 1) * second / 10;
       EXPECT_EQ(reports[i].time, time);
+      EXPECT_EQ(reports[i].stretch, i / 30 + 1);
       expectSums(reports[i].sums, stream, time - second / 2, time);
       EXPECT_EQ(expected[i].time, time);
       EXPECT_EQ(expected[i].sums.impulse, reports[i].sums.impulse);
@@ -488,10 +489,12 @@ TEST_F(ResponseMonitorTest, aJumpForwardBeginsAnotherStretch)
   const ResponseStatistics* report = monitor_.next();
   ASSERT_NE(report, nullptr) << "the end of the first one";
   EXPECT_EQ(report->time, epoch + 4000 * sample);
+  EXPECT_EQ(report->stretch, 1u);
   EXPECT_EQ(monitor_.next(), nullptr) << "nothing in between; and nobody knows whether an impact is still to come";
   report = monitor_.next(true);
   ASSERT_NE(report, nullptr);
   EXPECT_EQ(report->time, later.stamp + second / 10);
+  EXPECT_EQ(report->stretch, 2u);
   EXPECT_NEAR(report->window, 0.1, 1.0e-12);
   EXPECT_NEAR(report->total_time, 0.18, 1.0e-12);
   EXPECT_EQ(monitor_.restarts(), 0u);

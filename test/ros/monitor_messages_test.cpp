@@ -78,6 +78,26 @@ TEST(AlarmPanel, raisesAndClearsInBothDirections)
   EXPECT_EQ(panel.message().alarms[1].raised, 1u);
 }
 
+TEST(AlarmPanel, countsNoDelayWhileNobodyListens)
+{
+  constexpr core::StreamTime second = 1'000'000'000;
+  std::vector<AlarmParameters> patient = parameters();
+  patient.resize(1);
+  patient[0].limits.on_delay = 2 * second;
+  AlarmPanel panel(patient);
+  const auto update = [&](core::StreamTime time, std::uint64_t stretch)
+  {
+    core::ResponseStatistics statistics = statisticsAt(start + time, 300.0, 0.0);
+    statistics.stretch = stretch;
+    panel.update(statistics);
+    return panel.message().alarms[0].active != 0;
+  };
+  EXPECT_FALSE(update(0, 1));
+  EXPECT_FALSE(update(3600 * second, 2));
+  EXPECT_FALSE(update(3601 * second, 2));
+  EXPECT_TRUE(update(3602 * second, 2));
+}
+
 TEST(AlarmPanel, diagnosticsAreAsSevereAsTheWorst)
 {
   AlarmPanel panel(parameters());

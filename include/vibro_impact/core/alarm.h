@@ -28,6 +28,12 @@ public:
   /// delay begins anew.
   bool update(StreamTime time, double value);
 
+  /// Another stretch of time begins, and nobody has heard what was before it: so do the delays. The state stays.
+  void beginStretch()
+  {
+    beyond_since_.reset();
+  }
+
   bool active() const
   {
     return active_;

@@ -163,6 +163,7 @@ private:
   bool started_ = false;
   TimeIntervals heard_;
   TimeIntervals contact_;
+  std::uint64_t stretch_ = 0;  ///< how many have begun
   StreamTime stretch_begin_ = 0;
   StreamTime end_ = 0;  ///< of the last block
   StreamTime total_heard_ = 0;

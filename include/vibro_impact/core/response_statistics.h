@@ -12,6 +12,7 @@ namespace vibro_impact::core
 struct ResponseStatistics
 {
   StreamTime time = 0;
+  std::uint64_t stretch = 0;             ///< number of the stretch of time that it lies in, from 1
   double window = 0.0;                   ///< time of the window whose samples were heard, s
   ImpactSums sums;                       ///< of the impacts released in the window
   std::vector<std::uint64_t> histogram;  ///< of their impulses, as ImpulseHistogram counts

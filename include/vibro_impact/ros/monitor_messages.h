@@ -48,6 +48,7 @@ private:
     core::Alarm alarm;
   };
 
+  std::uint64_t stretch_ = 0;     ///< of the last statistics
   std::vector<Watched> watched_;  ///< in the order of the message
   AlarmArray message_;
 };
