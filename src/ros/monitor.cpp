@@ -2,12 +2,23 @@
 
 #include <utility>
 
+#include "vibro_impact/ros/checked_subscription.h"
+
 namespace vibro_impact::graph
 {
 namespace
 {
 /// An impact is small and must not be lost.
 constexpr std::uint32_t impact_queue = 100000;
+
+template <typename Message, typename Callback>
+ros::Subscriber listen(ros::NodeHandle& node, const std::string& topic, std::uint32_t queue, const Callback& callback)
+{
+  ros::SubscribeOptions options =
+      checkedSubscription<Message>(topic, queue, [callback](const auto& event) { callback(*event.getConstMessage()); });
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  return node.subscribe(options);
+}
 }  // namespace
 
 Monitor::Monitor(ros::NodeHandle node, const ros::NodeHandle& private_node)
@@ -37,34 +48,25 @@ Monitor::Monitor(ros::NodeHandle node, const ros::NodeHandle& private_node)
 void Monitor::subscribe(ros::NodeHandle& node)
 {
   const std::uint32_t queue = parameters_.queue_size;
-  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  const ros::VoidConstPtr none;
-  subscribers_ = {node.subscribe<ModelInfo>(
-                      "model_info", queue,
-                      [this](const auto& info)
-                      {
-                        if (contact_.take(*info) && feedback_)
-                        {
-                          feedback_->hold(contact_);
-                        }
-                      },
-                      none, hints),
-                  node.subscribe<Impact>(
-                      "impact", impact_queue,
-                      [this](const auto& impact) { monitor_.addImpact(toReleasedImpact(*impact)); }, none, hints),
-                  node.subscribe<Gap>(
-                      "gap", queue, [this](const auto& gap) { monitor_.addGap(toBlock(*gap)); }, none, hints),
-                  node.subscribe<BaseExcitation>(
-                      "base_excitation", queue, [this](const auto& drive) { monitor_.addExcitation(toBlock(*drive)); },
-                      none, hints),
-                  node.subscribe<ContactForce>(
-                      "contact_force", queue,
-                      [this](const auto& force)
-                      {
-                        monitor_.addForce(toBlock(*force));
-                        publish(false);
-                      },
-                      none, hints)};
+  const auto on_info = [this](const ModelInfo& info)
+  {
+    if (contact_.take(info) && feedback_)
+    {
+      feedback_->hold(contact_);
+    }
+  };
+  const auto on_force = [this](const ContactForce& force)
+  {
+    monitor_.addForce(toBlock(force));
+    publish(false);
+  };
+  subscribers_ = {listen<ModelInfo>(node, "model_info", queue, on_info),
+                  listen<Impact>(node, "impact", impact_queue,
+                                 [this](const auto& impact) { monitor_.addImpact(toReleasedImpact(impact)); }),
+                  listen<Gap>(node, "gap", queue, [this](const auto& gap) { monitor_.addGap(toBlock(gap)); }),
+                  listen<BaseExcitation>(node, "base_excitation", queue,
+                                         [this](const auto& drive) { monitor_.addExcitation(toBlock(drive)); }),
+                  listen<ContactForce>(node, "contact_force", queue, on_force)};
 }
 
 void Monitor::onTimer()

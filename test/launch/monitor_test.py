@@ -299,6 +299,26 @@ class MonitorTest(NodeProcessTest):
         self.assertEqual((last.total_impacts, last.missing_impacts, last.late_impacts), (20000, 0, 0))
         self.assertEqual((last.impacts, last.impact_rate), (5000, 5000.0))
 
+    def test_what_no_simulator_sends_is_refused_and_ends_nothing(self):
+        self.start_alone()
+
+        class Boast(ContactForce):
+            """Says that 2^32 - 1 samples follow, and ends."""
+
+            def serialize(self, buff):
+                ContactForce.serialize(self, buff)
+                buff.seek(-4, os.SEEK_END)
+                buff.write(b"\xff\xff\xff\xff")
+
+        self.to_force.publish(Boast(sample_period=PERIOD))
+        last = rospy.Time(4294967295)  # the last second that a stamp can hold
+        self.to_force.publish(ContactForce(header=Header(stamp=last), sample_period=1.0, force=[0.0]))
+        self.to_force.publish(ContactForce(header=Header(stamp=stamp(0)), sample_period=1.0e6, force=[0.0]))
+        self.to_force.publish(ContactForce(header=Header(stamp=stamp(0)), sample_period=PERIOD, force=[math.nan]))
+        self.expect(lambda: self.value("Messages refused") == "3")
+        self.to_force.publish(self.force(0, 1000))
+        self.expect(lambda: self.value("Samples of force") == "1000")
+
     def test_wear_opens_the_gap(self):
         unworn = -1.0e-7
         self.start_graph("interference_fit.yaml", window=0.1, report_period=0.02, settling_time=0.1, wear=dict(WEAR, coefficient=5.0e-10),
