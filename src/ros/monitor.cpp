@@ -41,7 +41,9 @@ Monitor::Monitor(ros::NodeHandle node, const ros::NodeHandle& private_node)
     diagnostics_.add("Wear feedback", [this](Status& status) { feedback_->report(status); });
   }
   diagnostic_timer_ = node.createWallTimer(ros::WallDuration(parameters_.diagnostic_period),
-                                           [this](const ros::WallTimerEvent&) { onTimer(); });
+                                           [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  silence_timer_ = node.createWallTimer(ros::WallDuration(parameters_.silence),
+                                        [this](const ros::WallTimerEvent&) { onSilenceTimer(); });
   subscribe(node);
 }
 
@@ -69,11 +71,10 @@ void Monitor::subscribe(ros::NodeHandle& node)
                   listen<ContactForce>(node, "contact_force", queue, on_force)};
 }
 
-void Monitor::onTimer()
+void Monitor::onSilenceTimer()
 {
   const std::uint64_t heard = monitor_.forceSamples().taken() + monitor_.impacts().taken();
   publish(heard == std::exchange(heard_at_timer_, heard));
-  diagnostics_.force_update();
 }
 
 void Monitor::publish(bool silent)

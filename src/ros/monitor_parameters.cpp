@@ -194,6 +194,7 @@ MonitorParameters parseMonitorParameters(const XmlRpc::XmlRpcValue& tree, const 
   MonitorParameters parameters;
   Faults faults;
   ParameterReader reader(tree, "");
+  parameters.silence = reader.positive("silence", parameters.silence, longest_wait, " (s)");
   parameters.diagnostic_period =
       reader.positive("diagnostic_period", parameters.diagnostic_period, longest_wait, " (s)");
   parameters.queue_size = reader.count("queue_size", parameters.queue_size, longest_queue);

@@ -82,11 +82,11 @@ class MonitorTest(NodeProcessTest):
         self.expect(all_sent)
 
     def start_monitor(self, **parameters):
-        """The monitor, and all that it says; it is heard before it is started."""
+        """The monitor, and all that it says; it is heard before it is started. A machine that stands still is no silence."""
         self.statistics = self.listen("impact_statistics", ImpactStatistics)
         self.alarms = self.listen("alarm", AlarmArray)
         self.diagnostics = self.listen("/diagnostics", DiagnosticArray)
-        self.run_node("monitor", dict({"diagnostic_period": 0.2, "queue_size": 0}, **parameters))
+        self.run_node("monitor", dict({"diagnostic_period": 0.2, "queue_size": 0, "silence": 3600.0}, **parameters))
         self.expect(lambda: is_connected(self.namespace + "/monitor", [
             self.namespace + "/impact_statistics", self.namespace + "/alarm", "/diagnostics"]))
 
@@ -121,10 +121,8 @@ class MonitorTest(NodeProcessTest):
         directory = tempfile.TemporaryDirectory()
         self.addCleanup(directory.cleanup)
         path = os.path.join(directory.name, "run.bag")
-        statistics_heard = self.listen("impact_statistics", ImpactStatistics)
         self.run_node("simulator", configuration("limiting_case.yaml"))
-        self.run_node("monitor", {"window": 0.5, "report_period": 0.1, "settling_time": 5.0,
-                                  "diagnostic_period": 1.0, "queue_size": 0, "wear": WEAR})
+        self.start_monitor(window=0.5, report_period=0.1, settling_time=5.0, wear=WEAR)
         topics = ["base_excitation", "gap", "contact_force", "impact", "model_info"]
         recorder = subprocess.Popen(
             [find_node("rosbag", "record")[0], "-O", path, "-b", "0", "--tcpnodelay",
@@ -133,7 +131,6 @@ class MonitorTest(NodeProcessTest):
         self.processes.append(recorder)
         for listener in ("monitor", "record"):
             self.connected(listener, "simulator", topics[1:])
-        self.expect(lambda: is_connected(self.namespace + "/monitor", [self.namespace + "/impact_statistics"]))
         self.node = "shaker"
         shaker = self.start({
             "signal": {"type": "stepped_sine", "acceleration": 10.0, "reference_frequency": REFERENCE_FREQUENCY,
@@ -143,7 +140,6 @@ class MonitorTest(NodeProcessTest):
             "recorder": "record"})
         self.assertEqual(shaker.wait(PATIENCE), 0, self.printed())
         samples = int(self.printed().split("published ")[-1].split()[0])
-        self.expect(lambda: statistics_heard and abs(statistics_heard[-1].total_time - samples * PERIOD) < 0.1 * PERIOD)
         recorder.send_signal(signal.SIGINT)
         self.assertEqual(recorder.wait(PATIENCE), 0)
 
@@ -152,6 +148,15 @@ class MonitorTest(NodeProcessTest):
         forces = [force for block in read["contact_force"] for force in block.force]
         self.origin = read["contact_force"][0].header.stamp.to_nsec()
         self.assertEqual(len(forces), samples)
+        self.expect(lambda: self.value("Samples of force") == str(samples) and
+                    self.value("Impacts") == str(len(read["impact"])))
+        # An hour later: another stretch, so that the one that was recorded ends with statistics at its last block.
+        to_force = self.publisher("contact_force", ContactForce)
+        self.expect(lambda: to_force.get_num_connections() == 1)
+        later = read["contact_force"][-1].header.stamp + rospy.Duration(3600)
+        to_force.publish(ContactForce(header=Header(stamp=later), seq=samples, sample_period=PERIOD, force=[0.0]))
+        self.expect(lambda: self.statistics and abs(self.statistics[-1].total_time - samples * PERIOD) < 0.1 * PERIOD)
+        statistics_heard = self.statistics
         for statistics in statistics_heard:
             self.compare(statistics, read["impact"], forces)
         last = statistics_heard[-1]
@@ -234,7 +239,8 @@ class MonitorTest(NodeProcessTest):
                 self.to_impact.publish(impact)
             number += rate
         self.expect(lambda: self.value("Impacts") == str(number))
-        for start in range(0, 10000, 250):
+        # What is due at 10 s comes when the force has gone on for the settling time, 0.5 s.
+        for start in range(0, 10500, 250):
             self.to_force.publish(self.force(start, 250))
         self.expect(lambda: self.statistics and self.statistics[-1].header.stamp.secs == START + 10)
         self.assertEqual(len(self.statistics), 100)
@@ -288,12 +294,21 @@ class MonitorTest(NodeProcessTest):
         self.assertEqual([(alarm.name, alarm.active) for alarm in late[0].alarms], [("hard", False), ("silent", True)])
         self.assertEqual(late[0].alarms[1].text, "impact_rate is 0 1/s: raised below 5")
 
+    def test_silence_brings_all_that_is_open(self):
+        self.start_alone(silence=0.2)
+        self.to_force.publish(self.force(0, 350))
+        self.expect(lambda: len(self.statistics) == 2)
+        self.assertEqual([message.header.stamp - rospy.Time(START) for message in self.statistics],
+                         [rospy.Duration(0.2), rospy.Duration(0.35)])
+
     def test_no_impact_of_a_flood_is_missing(self):
         self.start_alone(window=1.0, report_period=0.1)
         for second in range(4):
             for impact in self.impacts_every(2.0e-4, 5000 * second, 5000, second + 1.0e-4):
                 self.to_impact.publish(impact)
+            self.expect(lambda: self.value("Impacts") == str(5000 * (second + 1)))
             self.to_force.publish(self.force(1000 * second, 1000))
+        self.to_force.publish(self.force(4000, 500))  # the settling time
         self.expect(lambda: self.statistics and self.statistics[-1].header.stamp.secs == START + 4)
         last = self.statistics[-1]
         self.assertEqual((last.total_impacts, last.missing_impacts, last.late_impacts), (20000, 0, 0))
@@ -367,11 +382,13 @@ class MonitorTest(NodeProcessTest):
         for second in range(20):
             for impact in self.impacts_every(0.01, 100 * second, 100, second + 0.005):
                 self.to_impact.publish(impact)
-            self.to_force.publish(self.force(1000 * second, 1000))
+        self.expect(lambda: self.value("Impacts") == "2000")
+        for start in range(0, 20500, 500):
+            self.to_force.publish(self.force(start, 500))
         self.expect(lambda: self.statistics and self.statistics[-1].header.stamp.secs == START + 20)
         self.assertEqual((self.statistics[-1].total_impacts, self.statistics[-1].missing_impacts), (2000, 0))
         # The next statistics see that nobody has answered.
-        self.to_force.publish(self.force(20000, 2000))
+        self.to_force.publish(self.force(20500, 2000))
         self.expect(lambda: int(self.value("Changes refused") or 0) > 0)
         self.assertIn("no answer from " + self.namespace + "/nobody/set_contact", self.value("Last refusal"))
         self.assertEqual(self.value("Depth handed over (m)"), "0")

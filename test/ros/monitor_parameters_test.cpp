@@ -19,6 +19,7 @@ XmlRpcValue goodTree()
   XmlRpcValue tree;
   tree["window"] = 2;
   tree["report_period"] = 0.5;
+  tree["silence"] = 20;
   tree["histogram"]["from"] = "1e-8";
   tree["histogram"]["to"] = 1;
   tree["histogram"]["classes"] = 8;
@@ -62,6 +63,7 @@ TEST(MonitorParameters, allOfThemAreRead)
   const MonitorParameters parameters = parseMonitorParameters(goodTree(), "/monitor");
   EXPECT_EQ(parameters.options.window, 2'000'000'000);
   EXPECT_EQ(parameters.options.report_period, 500'000'000);
+  EXPECT_EQ(parameters.silence, 20.0);
   EXPECT_EQ(parameters.options.histogram.edges().size(), 9u);
   EXPECT_EQ(parameters.options.histogram.edges().front(), 1.0e-8);
   EXPECT_EQ(parameters.options.wear.coefficient, 2.0e-14);
@@ -85,6 +87,7 @@ TEST(MonitorParameters, noneIsRequired)
   XmlRpcValue nothing;
   const MonitorParameters parameters = parseMonitorParameters(nothing, "/monitor");
   EXPECT_EQ(parameters.options.window, 1'000'000'000);
+  EXPECT_EQ(parameters.silence, 1.0);
   EXPECT_TRUE(parameters.alarms.empty());
   EXPECT_FALSE(parameters.wear_feedback);
   EXPECT_EQ(parameters.options.wear.coefficient, 0.0);
@@ -95,6 +98,7 @@ TEST(MonitorParameters, everyFaultIsNamedAtOnce)
   XmlRpcValue tree = goodTree();
   tree["window"] = -1;
   tree["queue_size"] = -5;
+  tree["silence"] = 0;
   tree["histogram"]["to"] = 1.0e-9;
   tree["wear"]["source"] = "";
   tree["wear"]["area"] = 0;
@@ -102,10 +106,11 @@ TEST(MonitorParameters, everyFaultIsNamedAtOnce)
   tree["alarms"]["worn"]["clear_at"] = 1.0e-6;
   tree["wear_feedback"]["greatest_stop"] = 1;
   const std::string message = faultsOf(tree);
-  for (const char* part : {"window = -1: must be a number >= 0.001 and <= 600 (s)", "queue_size = -5",
-                           "histogram.to = 1e-09", "wear.source = \"\": must be where the coefficient comes from",
-                           "wear.area = 0: must be a number > 0", "did you mean impact_rate?",
-                           "alarms.worn.clear_at = 1e-06: must be unlike raise_at", "did you mean greatest_step?"})
+  for (const char* part :
+       {"window = -1: must be a number >= 0.001 and <= 600 (s)", "queue_size = -5", "silence = 0: must be a number > 0",
+        "histogram.to = 1e-09", "wear.source = \"\": must be where the coefficient comes from",
+        "wear.area = 0: must be a number > 0", "did you mean impact_rate?",
+        "alarms.worn.clear_at = 1e-06: must be unlike raise_at", "did you mean greatest_step?"})
   {
     EXPECT_NE(message.find(part), std::string::npos) << '"' << message << "\" lacks \"" << part << '"';
   }

@@ -28,8 +28,8 @@ public:
 
 private:
   void subscribe(ros::NodeHandle& node);
-  void onTimer();
-  /// The statistics that are due, and what follows from them. `silent`: nothing came since the last report.
+  void onSilenceTimer();
+  /// The statistics that are due, and what follows from them. `silent`: nothing has come for a while.
   void publish(bool silent);
 
   MonitorParameters parameters_;
@@ -37,12 +37,13 @@ private:
   AlarmPanel alarms_;
   std::optional<ContactFeedback> feedback_;
   HeldContact contact_;
-  std::uint64_t heard_at_timer_ = 0;
+  std::uint64_t heard_at_timer_ = 0;  ///< samples and impacts
   ros::Publisher statistics_publisher_;
   ros::Publisher alarm_publisher_;
   MonitorDiagnostics reports_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostic_timer_;
+  ros::WallTimer silence_timer_;
   std::vector<ros::Subscriber> subscribers_;
 };
 

@@ -37,6 +37,7 @@ struct MonitorParameters
   std::string wear_source;              ///< where the wear coefficient comes from
   std::vector<AlarmParameters> alarms;  ///< by name
   std::optional<WearFeedbackParameters> wear_feedback;
+  double silence = 1.0;            ///< after which nothing more is waited for, s of wall time
   double diagnostic_period = 1.0;  ///< s of wall time
   std::uint32_t queue_size = 1000;
 };
