@@ -125,6 +125,17 @@ class ExcitationTest(NodeProcessTest):
         self.assertEqual(bag["signal/topic"], "/imu/data_raw")
         self.assertEqual(bag["signal/input"], "imu")
         self.assertEqual(bag["signal_directory"], "/where/it/is/started")
+        # What is not asked for is left to the node; what only a bag of a sensor has is left out without one.
+        sensor = ("axis:=-x", "frame_id:=deck", "sample_period:=0.004", "offset:=9.81")
+        keys = ("signal/axis", "signal/frame_id", "signal/sample_period", "signal/offset")
+        self.assertEqual([key for key in keys if key in bag], [])
+        bag = launch_parameters("bag:=run.bag", "topic:=/deck/accel", "input:=accel", *sensor)
+        self.assertEqual([bag[key] for key in keys], ["-x", "deck", 0.004, "9.81"])
+        table = launch_parameters("table:=/data/measured.csv", *sensor)
+        self.assertEqual([key for key in keys if key in table], [])
+        # A block rate that is not given is the node's choice.
+        self.assertNotIn("block_rate", table)
+        self.assertEqual(launch_parameters("table:=/data/measured.csv", "block_rate:=5")["block_rate"], 5)
 
 
 if __name__ == "__main__":
