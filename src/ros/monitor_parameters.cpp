@@ -70,8 +70,8 @@ core::ImpulseHistogram readHistogram(const XmlRpc::XmlRpcValue& map, Faults& fau
 {
   ParameterReader reader(map, "histogram");
   const double from = reader.positive("from", 1.0e-9, greatest, " (N s)");
-  const double to = reader.positive("to", 1.0, greatest, " (N s)");
-  const std::uint32_t classes = reader.count("classes", 36, most_classes);
+  const double to = reader.positive("to", 100.0, greatest, " (N s)");
+  const std::uint32_t classes = reader.count("classes", 44, most_classes);
   if (classes == 0)
   {
     reader.reject("classes", "a whole number from 1 to " + std::to_string(most_classes));

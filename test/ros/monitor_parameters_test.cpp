@@ -88,6 +88,16 @@ TEST(MonitorParameters, noneIsRequired)
   const MonitorParameters parameters = parseMonitorParameters(nothing, "/monitor");
   EXPECT_EQ(parameters.options.window, 1'000'000'000);
   EXPECT_EQ(parameters.silence, 1.0);
+  // The same whether a histogram is given without an edge or not at all.
+  XmlRpcValue some;
+  some["histogram"]["from"] = 1.0e-9;
+  for (const MonitorParameters& defaults : {parameters, parseMonitorParameters(some, "/monitor")})
+  {
+    const std::vector<double>& edges = defaults.options.histogram.edges();
+    EXPECT_EQ(edges.size(), 45u);
+    EXPECT_EQ(edges.front(), 1.0e-9);
+    EXPECT_EQ(edges.back(), 100.0) << "a ship's pipe has impacts of 26 N s";
+  }
   EXPECT_TRUE(parameters.alarms.empty());
   EXPECT_FALSE(parameters.wear_feedback);
   EXPECT_EQ(parameters.options.wear.coefficient, 0.0);

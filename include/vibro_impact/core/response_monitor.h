@@ -19,10 +19,10 @@ namespace vibro_impact::core
 {
 struct MonitorOptions
 {
-  StreamTime window = 1'000'000'000;          ///< ns
-  StreamTime report_period = 200'000'000;     ///< ns
-  StreamTime settling_time = 500'000'000;     ///< ns
-  ImpulseHistogram histogram{1e-9, 1.0, 36};  ///< its classes
+  StreamTime window = 1'000'000'000;            ///< ns
+  StreamTime report_period = 200'000'000;       ///< ns
+  StreamTime settling_time = 500'000'000;       ///< ns
+  ImpulseHistogram histogram{1e-9, 100.0, 44};  ///< its classes: four in a decade
   ArchardWear wear;
   double drive_frequency = 0.0;      ///< 0: measured in the excitation, Hz
   double period_tolerance = 1.0e-4;  ///< ResponseOptions::tolerance
