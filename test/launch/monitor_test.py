@@ -3,6 +3,7 @@
 
 import math
 import os
+import re
 import signal
 import subprocess
 import tempfile
@@ -406,9 +407,26 @@ class MonitorTest(NodeProcessTest):
 
     def test_the_shipped_configuration_is_good(self):
         with open(os.path.join(PACKAGE, "config", "monitor.yaml")) as stream:
-            self.start_alone(**yaml.safe_load(stream))
+            text = stream.read()
+        # With the keys that stand there as comments; README.md says that there are all.
+        everything = yaml.safe_load(re.sub(r"^# (( {2})?\w+:( .*)?)$", r"\1", text, flags=re.MULTILINE))
+        self.assertEqual(set(everything), {
+            "window", "report_period", "settling_time", "silence", "drive_frequency", "period_tolerance", "queue_size",
+            "diagnostic_period", "histogram", "wear", "alarms", "wear_feedback"})
+        self.assertEqual(set(everything["wear_feedback"]), {"simulator", "interval", "greatest_step"})
+        self.start_alone(**everything)
         self.expect(lambda: self.alarms)
         self.assertEqual([alarm.name for alarm in self.alarms[0].alarms], ["hammering", "hard_impacts", "silent"])
+
+    def test_the_launch_file_leaves_to_the_configuration_what_it_is_not_told(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as config:
+            config.write("{window: 7.0, silence: 3.0}")
+            config.flush()
+            output = subprocess.check_output(
+                ["roslaunch", "--dump-params", os.path.join(PACKAGE, "launch", "monitor.launch"), "config:=" + config.name,
+                 "silence:=20", "wear_feedback:=true"], universal_newlines=True)
+        self.assertEqual(yaml.safe_load(output), {
+            "/monitor/window": 7.0, "/monitor/silence": 20.0, "/monitor/wear_feedback/simulator": "simulator"})
 
     def test_bad_parameters_end_it_with_all_faults(self):
         monitor = self.run_node("monitor", {"window": 0, "wear": {"coefficient": -1.0}, "alarm": {}})
