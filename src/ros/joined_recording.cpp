@@ -14,11 +14,6 @@ namespace vibro_impact::graph
 {
 namespace
 {
-BlockHead headOf(const BaseExcitation& block)
-{
-  return {block.seq, block.acceleration.size(), block.header.stamp, block.sample_period};
-}
-
 bool answers(const BlockHead& question, const BlockHead& answer)
 {
   return answer.seq == question.seq && answer.samples == question.samples && answer.stamp == question.stamp &&
@@ -163,7 +158,7 @@ public:
   void onExcitation(const BaseExcitation& block) override
   {
     const std::uint64_t message = messages_++;
-    const BlockHead head = headOf(block);
+    const BlockHead head = headOf(block, block.acceleration.size());
     if ((stretch_ != nullptr && (message < stretch_->begin || message >= stretch_->end)) || !axis_.take(head))
     {
       return;
@@ -274,7 +269,7 @@ Joiner::Stretch findStretch(const RecordedRun& recording, std::size_t wanted)
   recording.readExcitation(
       [&](const BaseExcitation& block)
       {
-        const BlockHead head = headOf(block);
+        const BlockHead head = headOf(block, block.acceleration.size());
         try
         {
           current.axis.take(head);

@@ -79,12 +79,6 @@ bool isInside(const std::string& topic, const std::string& name_space)
   return absolute(topic).compare(0, prefix.size() + 1, prefix + "/") == 0;
 }
 
-template <typename Block>
-BlockHead headOf(const Block& block, std::size_t samples)
-{
-  return {block.seq, samples, block.header.stamp, block.sample_period};
-}
-
 // A message as it was recorded.
 struct RecordedMessage
 {

@@ -22,11 +22,6 @@ constexpr double spoilt_cycles = 4.0;
 // Share of the first of the two readings in the progress.
 constexpr double first_reading = 0.8;
 
-BlockHead headOf(const BaseExcitation& block)
-{
-  return {block.seq, block.acceleration.size(), block.header.stamp, block.sample_period};
-}
-
 // The samples in contact, as the force shows them.
 class ContactTrace
 {
@@ -81,7 +76,7 @@ public:
 
   void onExcitation(const BaseExcitation& block) override
   {
-    const BlockHead head = headOf(block);
+    const BlockHead head = headOf(block, block.acceleration.size());
     if (!check_.takeExcitation(head))
     {
       return;

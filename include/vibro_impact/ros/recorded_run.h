@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -27,6 +28,13 @@ struct BlockHead
     return seq + samples;
   }
 };
+
+/// Of a message BaseExcitation, Gap or ContactForce that has so many samples.
+template <typename Block>
+BlockHead headOf(const Block& block, std::size_t samples)
+{
+  return {block.seq, samples, block.header.stamp, block.sample_period};
+}
 
 /// Who is told what a recording holds, in the order in which it was recorded.
 class RecordingSink
