@@ -177,7 +177,7 @@ public:
     }
     else
     {
-      axis_.check().refuseExcitation(head, "holds a sample that is not finite");
+      axis_.check().refuseExcitation(head);
     }
     gap_.extend(axis_);
     force_.extend(axis_);
@@ -185,18 +185,16 @@ public:
 
   void onGap(const BlockHead& block, const std::vector<double>& gap) override
   {
-    if (belongs(block.seq, 0.0, block.stamp))
+    if (belongs(block.seq, 0.0, block.stamp) && axis_.check().takeGap(block, gap))
     {
-      axis_.check().takeGap(block);
       gap_.take(axis_, block, gap);
     }
   }
 
   void onContactForce(const BlockHead& block, const std::vector<double>& force) override
   {
-    if (belongs(block.seq, 0.0, block.stamp))
+    if (belongs(block.seq, 0.0, block.stamp) && axis_.check().takeContactForce(block, force))
     {
-      axis_.check().takeContactForce(block, force);
       force_.take(axis_, block, force);
     }
   }

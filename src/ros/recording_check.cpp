@@ -15,6 +15,7 @@ namespace
 {
 // Numbers of samples up to here are exact in a double, by which samples are dated.
 constexpr std::uint64_t last_seq = std::uint64_t{1} << 53;
+constexpr const char* not_finite = "holds a sample that is not finite";
 
 bool startsBefore(const BlockHead& block, std::uint64_t seq)
 {
@@ -105,20 +106,36 @@ bool RecordingCheck::takeExcitation(const BlockHead& block)
   return true;
 }
 
-void RecordingCheck::refuseExcitation(const BlockHead& block, const std::string& reason)
+void RecordingCheck::refuseExcitation(const BlockHead& block)
 {
-  losses_.push_back(
-      {block.seq, block.end(), text("topic ", topics_.base_excitation, ": the block of seq ", block.seq, " ", reason)});
+  losses_.push_back({block.seq, block.end(),
+                     text("topic ", topics_.base_excitation, ": the block of seq ", block.seq, " ", not_finite)});
 }
 
-void RecordingCheck::takeGap(const BlockHead& block)
+bool RecordingCheck::take(Answers& answers, const BlockHead& block, const std::vector<double>& samples)
 {
-  gaps_.push_back(block);
+  answers.blocks.push_back(block);
+  const bool finite = std::all_of(samples.begin(), samples.end(), [](double value) { return std::isfinite(value); });
+  if (!finite)
+  {
+    answers.not_finite.insert(block.seq);
+  }
+  return finite;
 }
 
-void RecordingCheck::takeContactForce(const BlockHead& block, const std::vector<double>& force)
+bool RecordingCheck::takeGap(const BlockHead& block, const std::vector<double>& gap)
 {
-  bool in_contact = contact_goes_on_ && !forces_.empty() && forces_.back().end() == block.seq;
+  return take(gaps_, block, gap);
+}
+
+bool RecordingCheck::takeContactForce(const BlockHead& block, const std::vector<double>& force)
+{
+  bool in_contact = contact_goes_on_ && !forces_.blocks.empty() && forces_.blocks.back().end() == block.seq;
+  if (!take(forces_, block, force))
+  {
+    contact_goes_on_ = false;  // nobody knows
+    return false;
+  }
   for (std::size_t i = 0; i < force.size(); ++i)
   {
     const bool was_in_contact = in_contact;
@@ -129,7 +146,7 @@ void RecordingCheck::takeContactForce(const BlockHead& block, const std::vector<
     }
   }
   contact_goes_on_ = in_contact;
-  forces_.push_back(block);
+  return true;
 }
 
 bool RecordingCheck::takeImpact(const Impact& impact)
@@ -181,9 +198,9 @@ void RecordingCheck::expectImpact(const Impact& impact, std::uint64_t number, st
   }
 }
 
-void RecordingCheck::compare(std::vector<BlockHead> answers, const std::string& topic, std::vector<Loss>& losses) const
+void RecordingCheck::compare(Answers answers, const std::string& topic, std::vector<Loss>& losses) const
 {
-  std::stable_sort(answers.begin(), answers.end(),
+  std::stable_sort(answers.blocks.begin(), answers.blocks.end(),
                    [](const BlockHead& a, const BlockHead& b) { return a.seq < b.seq; });
   // Blocks in a row that are missing are one loss.
   std::uint64_t missing = 0;
@@ -201,7 +218,7 @@ void RecordingCheck::compare(std::vector<BlockHead> answers, const std::string& 
   };
   for (const BlockHead& block : excitation_)
   {
-    const BlockHead* answer = find(answers, block.seq);
+    const BlockHead* answer = find(answers.blocks, block.seq);
     if (answer == nullptr)
     {
       first = missing == 0 ? block.seq : first;
@@ -210,7 +227,11 @@ void RecordingCheck::compare(std::vector<BlockHead> answers, const std::string& 
       continue;
     }
     flush();
-    const std::string difference = mismatch(block, *answer);
+    std::string difference = mismatch(block, *answer);
+    if (difference.empty() && answers.not_finite.count(block.seq) != 0)
+    {
+      difference = not_finite;
+    }
     if (!difference.empty())
     {
       losses.push_back(
@@ -224,9 +245,9 @@ void RecordingCheck::compare(std::vector<BlockHead> answers, const std::string& 
 void RecordingCheck::findUnasked(std::vector<Loss>& losses) const
 {
   std::map<std::uint64_t, std::uint64_t> answered;  // first sample and the one after the last
-  for (const std::vector<BlockHead>* answers : {&gaps_, &forces_})
+  for (const Answers* answers : {&gaps_, &forces_})
   {
-    for (const BlockHead& answer : *answers)
+    for (const BlockHead& answer : answers->blocks)
     {
       // Between the first and the last block the numbers of these have shown what is missing.
       if (answer.seq < excitation_.front().seq || answer.seq >= excitation_.back().end())

@@ -89,20 +89,22 @@ public:
                                   [](double value) { return !std::isfinite(value); });
     if (bad != block.acceleration.end())
     {
-      check_.refuseExcitation(head, "holds a sample that is not finite");
+      check_.refuseExcitation(head);
     }
     search_->add(block.seq, block.acceleration.data(), block.acceleration.size());
   }
 
-  void onGap(const BlockHead& block, const std::vector<double>& /*gap*/) override
+  void onGap(const BlockHead& block, const std::vector<double>& gap) override
   {
-    check_.takeGap(block);
+    check_.takeGap(block, gap);
   }
 
   void onContactForce(const BlockHead& block, const std::vector<double>& force) override
   {
-    check_.takeContactForce(block, force);
-    trace_.add(block, force);
+    if (check_.takeContactForce(block, force))
+    {
+      trace_.add(block, force);
+    }
   }
 
   void onImpact(const Impact& impact) override

@@ -119,10 +119,19 @@ class ReadBagTest(unittest.TestCase):
     def test_a_block_that_is_not_finite_is_lost(self):
         _, _, message = self.run_.of("base_excitation")[4]
         message.acceleration = [float("inf")] + list(message.acceleration[1:])
+        _, _, message = self.run_.of("gap")[7]
+        message.gap = list(message.gap[:-1]) + [float("nan")]
+        _, _, message = self.run_.of("contact_force")[9]
+        message.force = [-float("inf")] + list(message.force[1:])
         self.run_.write(self.path)
         recording = vibro_impact.read_bag(self.path)
         self.assert_lost(recording.acceleration, self.run_.acceleration, 400)
-        self.assertIn("not finite", recording.losses[0][2])
+        self.assert_lost(recording.gap, self.run_.gap, 700)
+        self.assert_lost(recording.contact_force, self.run_.force, 900)
+        self.assertEqual([loss[:2] for loss in recording.losses], [(400, 500), (700, 800), (900, 1000)])
+        for (_, _, reason), topic in zip(recording.losses, ("base_excitation", "gap", "contact_force")):
+            self.assertIn(topic, reason)
+            self.assertIn("not finite", reason)
 
     def test_an_answer_to_something_else_is_lost(self):
         _, _, message = self.run_.of("gap")[4]

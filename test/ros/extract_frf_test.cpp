@@ -417,6 +417,18 @@ TEST_F(ExtractFrf, refusesASampleThatIsNotFinite)
   expectRefusal(extract(run), 1, "the block of seq 3600 holds a sample that is not finite");
 }
 
+TEST_F(ExtractFrf, answersThatAreNotFiniteAreLost)
+{
+  SyntheticRun run = Sweep().run();
+  run.gaps[3].gap[7] = std::numeric_limits<double>::quiet_NaN();
+  expectRefusal(extract(run), 1, "topic /gap: the block of seq 1200 holds a sample that is not finite");
+  run.forces[30].force[0] = std::numeric_limits<double>::infinity();
+  const Outcome outcome = extract(run, "--allow-gaps");
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("5 steps found, 2 left out"));
+  EXPECT_THAT(outcome.out, HasSubstr("topic /contact_force: the block of seq 12000 holds a sample that is not finite"));
+}
+
 TEST_F(ExtractFrf, refusesASweptSine)
 {
   core::PlayedSignal signal(sample_rate);

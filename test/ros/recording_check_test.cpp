@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ protected:
       {
         force[i - seq] = 2.5;
       }
-      check_.takeGap(block(seq));
+      check_.takeGap(block(seq), none);
       check_.takeContactForce(block(seq), force);
     }
   }
@@ -143,7 +144,7 @@ TEST_F(Check, missingAnswersInARowAreOneLoss)
     check_.takeContactForce(block(seq), none);
     if (seq != 300 && seq != 400)
     {
-      check_.takeGap(block(seq));
+      check_.takeGap(block(seq), none);
     }
   }
   expectLoss(300, 500, "topic /gap: seq 300 to 499 (2 blocks) is missing");
@@ -154,7 +155,7 @@ TEST_F(Check, missingForceIsALossAtTheEndToo)
   takeExcitation();
   for (std::uint64_t seq = 0; seq < 1000; seq += 100)
   {
-    check_.takeGap(block(seq));
+    check_.takeGap(block(seq), none);
     if (seq != 900)
     {
       check_.takeContactForce(block(seq), none);
@@ -173,7 +174,7 @@ TEST_F(Check, answersMustHaveSamplesPeriodAndStampOfTheBlock)
     gap.samples = seq == 100 ? 99 : gap.samples;
     gap.sample_period = seq == 200 ? 2.0 * period : gap.sample_period;
     force.stamp += ros::Duration(seq == 300 ? 1.0e-9 : 0.0);
-    check_.takeGap(gap);
+    check_.takeGap(gap, none);
     check_.takeContactForce(force, none);
   }
   const auto losses = check_.finish().losses;
@@ -181,6 +182,36 @@ TEST_F(Check, answersMustHaveSamplesPeriodAndStampOfTheBlock)
   EXPECT_THAT(losses[0].reason, AllOf(HasSubstr("seq 100"), HasSubstr("99 samples instead of 100")));
   EXPECT_THAT(losses[1].reason, AllOf(HasSubstr("seq 200"), HasSubstr("sample_period 0.002")));
   EXPECT_THAT(losses[2].reason, AllOf(HasSubstr("seq 300"), HasSubstr("header.stamp")));
+}
+
+TEST_F(Check, answersMustBeFinite)
+{
+  takeExcitation();
+  for (std::uint64_t seq = 0; seq < 1000; seq += 100)
+  {
+    std::vector<double> gap(100, 1.0e-4);
+    std::vector<double> force(100, 0.0);
+    if (seq == 200)
+    {
+      gap[99] = std::nan("");
+    }
+    if (seq == 500)
+    {
+      // Neither a contact that ends here, nor one that goes on to the next block.
+      force[98] = std::nan("");
+      force[99] = std::numeric_limits<double>::infinity();
+    }
+    EXPECT_EQ(check_.takeGap(block(seq), gap), seq != 200);
+    EXPECT_EQ(check_.takeContactForce(block(seq), force), seq != 500);
+  }
+  const auto losses = check_.finish().losses;
+  ASSERT_EQ(losses.size(), 2u);
+  EXPECT_EQ(losses[0].first, 200u);
+  EXPECT_EQ(losses[0].last, 300u);
+  EXPECT_EQ(losses[0].reason, "topic /gap: the block of seq 200 holds a sample that is not finite");
+  EXPECT_EQ(losses[1].first, 500u);
+  EXPECT_EQ(losses[1].last, 600u);
+  EXPECT_EQ(losses[1].reason, "topic /contact_force: the block of seq 500 holds a sample that is not finite");
 }
 
 TEST_F(Check, impactsAreCounted)
@@ -235,10 +266,10 @@ TEST_F(Check, recordingMayBeginInTheMiddleOfTheStream)
   for (const std::uint64_t seq : {500, 600})
   {
     check_.takeExcitation(block(seq));
-    check_.takeGap(block(seq));
+    check_.takeGap(block(seq), none);
     check_.takeContactForce(block(seq), none);
   }
-  check_.takeGap(block(400));  // the recorder hears of this topic first
+  check_.takeGap(block(400), none);  // the recorder hears of this topic first
   check_.takeImpact(impact(17, 510));
   const RecordingSummary summary = check_.finish();
   EXPECT_TRUE(summary.losses.empty());
@@ -336,7 +367,7 @@ TEST(CheckWithoutImpacts, isRefusedIfAContactHasEnded)
 {
   RecordingCheck silent({"/base_excitation", "/gap", "/contact_force", "", "/model_info", ""});
   silent.takeExcitation(block(0));
-  silent.takeGap(block(0));
+  silent.takeGap(block(0), none);
   silent.takeContactForce(block(0), none);
   EXPECT_TRUE(silent.finish().losses.empty());
   silent.takeContactForce(block(0), {0.0, 1.0});

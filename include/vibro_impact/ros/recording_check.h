@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct RecordingSummary
 };
 
 /// Proves that nothing of a run is missing in its recording, or says what is: the excitation's samples are numbered
-/// without a gap, every block of it was answered by a gap and a contact force of its number, there is no answer without
-/// its block, and impacts are numbered without a gap up to the last contact that the force shows to have ended.
+/// without a gap, every block of it was answered by a gap and a contact force of its number, finite ones, there is no
+/// answer without its block, and impacts are numbered without a gap up to the last contact that the force shows to have ended.
 class RecordingCheck
 {
 public:
@@ -44,11 +45,12 @@ public:
   /// restarts, jumps in time (StreamLimits::max_stamp_jitter) or changes its period, as the samples before and after
   /// have no common time axis, and where the period or the number is out of range.
   bool takeExcitation(const BlockHead& block);
-  /// The block taken last cannot be used, as `reason` says.
-  void refuseExcitation(const BlockHead& block, const std::string& reason);
+  /// The block taken last holds a sample that is not finite.
+  void refuseExcitation(const BlockHead& block);
 
-  void takeGap(const BlockHead& block);
-  void takeContactForce(const BlockHead& block, const std::vector<double>& force);
+  /// An answer and its samples; one with a sample that is not finite is lost. False: it is such a one.
+  bool takeGap(const BlockHead& block, const std::vector<double>& gap);
+  bool takeContactForce(const BlockHead& block, const std::vector<double>& force);
   /// False: a repetition, to be left. Throws config::Error for an impact with a value that is not finite.
   bool takeImpact(const Impact& impact);
 
@@ -57,15 +59,23 @@ public:
   RecordingSummary finish();
 
 private:
+  /// Blocks of one topic.
+  struct Answers
+  {
+    std::vector<BlockHead> blocks;
+    std::set<std::uint64_t> not_finite;  // first samples of those that hold something else than finite numbers
+  };
+
+  static bool take(Answers& answers, const BlockHead& block, const std::vector<double>& samples);
   void expectImpact(const Impact& impact, std::uint64_t number, std::uint64_t since);
-  void compare(std::vector<BlockHead> answers, const std::string& topic, std::vector<Loss>& losses) const;
+  void compare(Answers answers, const std::string& topic, std::vector<Loss>& losses) const;
   void findUnasked(std::vector<Loss>& losses) const;
   void findMissingEnd(std::vector<Loss>& losses) const;
 
   RecordedTopics topics_;
   std::vector<BlockHead> excitation_;
-  std::vector<BlockHead> gaps_;
-  std::vector<BlockHead> forces_;
+  Answers gaps_;
+  Answers forces_;
   bool contact_goes_on_ = false;      // over the end of the last block of force
   std::uint64_t last_separated_ = 0;  // sample without contact that follows one in contact, the last one
   std::vector<Loss> losses_;
