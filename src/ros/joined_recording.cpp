@@ -209,7 +209,9 @@ public:
 
   void onModelInfo(const ModelInfo& info) override
   {
-    const auto same = [&](const ModelInfo& other) { return other.number == info.number && other.seq == info.seq; };
+    // A simulator that was started anew counts from 0 again.
+    const auto same = [&](const ModelInfo& other)
+    { return other.number == info.number && other.seq == info.seq && other.configuration == info.configuration; };
     if (joined_.models.empty() || !same(joined_.models.back()))
     {
       joined_.models.push_back(info);

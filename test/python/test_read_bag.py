@@ -14,6 +14,8 @@ sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 import vibro_impact  # noqa: E402
 from synthetic_bag import BLOCK, PERIOD, START, SyntheticBag, join_with_rosbag, stamp_of  # noqa: E402
 
+from vibro_impact.msg import ModelInfo  # noqa: E402
+
 
 class ReadBagTest(unittest.TestCase):
     def setUp(self):
@@ -152,6 +154,15 @@ class ReadBagTest(unittest.TestCase):
         self.assertEqual(recording.summary.blocks, 20)
         self.assertEqual(len(recording.impacts), len(self.run_.onsets))
         self.assertEqual((len(recording.starts), len(recording.models)), (1, 1))
+
+    def test_another_model_with_the_same_numbers_is_no_repetition(self):
+        time, _, message = self.run_.of("model_info")[0]
+        other = ModelInfo(**{name: getattr(message, name) for name in message.__slots__})
+        other.configuration = "beam: 2"
+        self.run_.add("model_info", other, time + (stamp_of(10 * BLOCK) - START))
+        self.run_.write(self.path)
+        models = vibro_impact.read_bag(self.path).models
+        self.assertEqual([model.configuration for model in models], ["beam: 1", "beam: 2"])
 
     def test_split_bag(self):
         parts = []
