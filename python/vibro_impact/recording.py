@@ -101,8 +101,9 @@ def extract_responses(
 
     Returns an object with responses and impacts (structured arrays with the columns of frf.csv and impacts.csv), steps
     (list of the (start, end) of each response's step in s from sample 0 of the stream),
-    left_out (list of (omega_star, first sample, sample after the last one, reason)), contacts (list of (first sample,
-    stiffness in N/m, clearance in m, number of responses)), losses and summary (as of a Recording). Raises
+    left_out (list of (omega_star, first sample, sample after the last one, reason)), covered (share of the samples that
+    belongs to steps, those left out included: where it is small, the drive may have none), contacts (list of (first
+    sample, stiffness in N/m, clearance in m, number of responses)), losses and summary (as of a Recording). Raises
     vibro_impact.Error where it cannot give a response.
     """
     return _recording.extract(

@@ -237,6 +237,8 @@ void defineRecording(py::module& module)
       .def_property_readonly("contacts", &contactsOf,
                              "list of (number of the first sample, stiffness in N/m, clearance in m, elements of "
                              "responses), in order of time")
+      .def_readonly("covered", &graph::Extraction::covered,
+                    "share of the samples that belongs to steps, those left out included, 1")
       .def_property_readonly(
           "losses", [](const graph::Extraction& self) { return lossesOf(self.recording.losses); }, "as of a Recording")
       .def_property_readonly(

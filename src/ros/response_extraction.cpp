@@ -181,18 +181,27 @@ private:
   ContactTrace trace_;
 };
 
-// The steps, cut where the contact changes.
-std::vector<core::FoundStep> cutAtChanges(const std::vector<core::FoundStep>& steps, const ContactHistory& history)
+// A step or a part of one.
+struct StepPart
 {
-  std::vector<core::FoundStep> parts;
-  for (core::FoundStep rest : steps)
+  core::FoundStep step;
+  bool cut = false;
+};
+
+// The steps, cut where the contact changes.
+std::vector<StepPart> cutAtChanges(const std::vector<core::FoundStep>& steps, const ContactHistory& history)
+{
+  std::vector<StepPart> parts;
+  for (const core::FoundStep& step : steps)
   {
+    StepPart rest{step};
     for (const DatedContact& dated : history.contacts())
     {
-      if (dated.seq > rest.first && dated.seq < rest.last)
+      if (dated.seq > rest.step.first && dated.seq < rest.step.last)
       {
+        rest.cut = true;
         parts.push_back(rest);
-        parts.back().last = rest.first = dated.seq;
+        parts.back().step.last = rest.step.first = dated.seq;
       }
     }
     parts.push_back(rest);
@@ -287,8 +296,10 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
   const auto cycles = [&](const core::FoundStep& step)
   { return static_cast<double>(step.last - step.first) * summary.sample_period * step.frequency / two_pi; };
   std::vector<core::FoundStep> found;
-  for (const core::FoundStep& part : cutAtChanges(survey.steps(), history))
+  std::uint64_t covered = 0;
+  for (const auto& [part, cut] : cutAtChanges(survey.steps(), history))
   {
+    covered += part.last - part.first;
     if (cycles(part) >= options.steps.shortest_step)
     {
       found.push_back(part);
@@ -296,10 +307,11 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
     else
     {
       extraction.left_out.push_back({part.frequency / scales.frequency, part.first, part.last,
-                                     text("changes of the contact leave ", cycles(part),
+                                     text(cut ? "changes of the contact leave " : "has ", cycles(part),
                                           " cycles, a step has at least ", options.steps.shortest_step)});
     }
   }
+  extraction.covered = static_cast<double>(covered) / static_cast<double>(std::max<std::uint64_t>(summary.samples, 1));
   const auto tell = [&](double share)
   {
     if (progress)

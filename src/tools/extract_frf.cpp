@@ -162,6 +162,13 @@ void report(const graph::Extraction& extraction, const std::string& out)
     std::cout << "left out: omega* " << step.omega_star << ", samples " << step.first << " to " << step.last - 1 << ": "
               << step.reason << "\n";
   }
+  // Noise holds stretches that look like a few cycles of a sine.
+  if (extraction.covered < 0.5)
+  {
+    std::cout << "warning: the steps cover only " << std::setprecision(2) << 100.0 * extraction.covered
+              << " % of the samples: the drive may have no steps\n"
+              << std::setprecision(6);
+  }
   std::size_t captured = 0;
   for (const core::Response& response : responses)
   {

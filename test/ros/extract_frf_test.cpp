@@ -18,6 +18,7 @@
 #include "../core/common.h"
 #include "synthetic_run.h"
 #include "vibro_impact/config/response_table.h"
+#include "vibro_impact/core/drive_signal.h"
 #include "vibro_impact/core/response.h"
 
 namespace vibro_impact::graph
@@ -26,7 +27,9 @@ namespace
 {
 using core::two_pi;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr double sample_rate = 20000.0;
@@ -169,7 +172,7 @@ TEST_F(ExtractFrf, findsTheStepsAndEvaluatesTheirImpacts)
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr(std::to_string(run.excitations.size()) + " blocks, " +
                               std::to_string(sweep.signal.samples().size()) + " samples, none lost"),
-                    HasSubstr("5 steps found, 0 left out"), HasSubstr("frf.csv (5 rows)"), HasSubstr("(75 rows)")));
+                    Not(HasSubstr("warning")), HasSubstr("5 steps found, 0 left out"), HasSubstr("frf.csv (5 rows)"), HasSubstr("(75 rows)")));
   const auto impacts = config::readImpactTable(path("results/impacts.csv"));
   ASSERT_EQ(impacts.size(), 75u);
   for (const config::ImpactRow& row : impacts)
@@ -435,6 +438,25 @@ TEST_F(ExtractFrf, refusesASweptSine)
   signal.sweep(300.0, 600.0, 2.0, 4.0, true);
   expectRefusal(extract(SyntheticRun(limitingCase(), signal.samples(), signal.samplePeriod())), 1,
                 "no steps of constant frequency found");
+}
+
+TEST_F(ExtractFrf, warnsOfStepsThatCoverLittleAsThoseOfNoiseDo)
+{
+  core::RandomParameters noise;
+  noise.spectrum = {{2.0, 0.02}, {5.0, 0.1}, {50.0, 0.1}, {100.0, 0.03}};
+  noise.duration = 60.0;
+  const auto signal = core::makeDriveSignal(noise, 5000.0);
+  std::vector<double> samples(signal->samples());
+  signal->generate(0, samples.size(), samples.data());
+  const SyntheticRun run(config::loadFile(std::string(CONFIG_DIRECTORY) + "/ship_tube.yaml"), samples,
+                         signal->samplePeriod());
+  const Outcome outcome = extract(run);
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, ContainsRegex("\nwarning: the steps cover only [1-9][.0-9]* % of the samples: the drive may "
+                                         "have no steps\n"));
+  // No change of the contact cuts them.
+  EXPECT_THAT(outcome.out, ContainsRegex(": has 3[.][0-9]+ cycles, a step has at least 4\n"));
+  EXPECT_THAT(outcome.out, Not(HasSubstr("changes of the contact")));
 }
 
 TEST_F(ExtractFrf, runWithoutContactHasRowsWithoutImpacts)

@@ -20,14 +20,14 @@ struct ExtractionOptions
   core::ResponseOptions response;
 };
 
-/// A step of the drive, or the part of one under one contact, that is not evaluated because of a loss, or because a
-/// change of the contact has left too few cycles of it.
+/// A step of the drive, or the part of one under one contact, that is not evaluated because of a loss, or because it has
+/// too few cycles, as those that a change of the contact has left of it.
 struct LeftOutStep
 {
   double omega_star = 0.0;  ///< drive frequency over the lowest natural frequency of beam 1, 1
   std::uint64_t first = 0;  ///< number of its first sample
   std::uint64_t last = 0;   ///< number of the sample after its last one
-  std::string reason;       ///< the loss or the change
+  std::string reason;       ///< the loss, or how many cycles there are
 };
 
 /// A contact of the recording and its share of the responses.
@@ -44,6 +44,7 @@ struct Extraction
   std::vector<core::Response> responses;  ///< one per step and contact, in order of time
   std::vector<ContactSpan> contacts;      ///< in order of time, at least one
   std::vector<LeftOutStep> left_out;
+  double covered = 0.0;  ///< share of the samples that belongs to steps, those left out included
 };
 
 /// Reads a recording, a long one twice: for what it holds and the steps of its drive, and for the exact frequencies of
