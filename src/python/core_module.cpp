@@ -368,6 +368,14 @@ Immutable; may be used by several threads at a time.)")
           "contact_frequencies", [](const Model& self) { return copyOf(self.summary.contact_frequencies); },
           "natural frequencies in contact, Hz")
       .def_property_readonly(
+          "free_damping_ratios",
+          [](const Model& self)
+          {
+            const Eigen::ArrayXd& ratios = self.model->free().damping_ratio;
+            return copyOf({ratios.data(), ratios.data() + ratios.size()});
+          },
+          "damping ratio of each mode while apart, in the order of free_frequencies, 1")
+      .def_property_readonly(
           "mapping_loss", [](const Model& self) { return copyOf(self.summary.mapping_loss); },
           "share of a unit coordinate's energy that the mapping into contact loses, one per free frequency, 1")
       .def_property_readonly(

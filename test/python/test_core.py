@@ -65,6 +65,14 @@ class CoreTest(unittest.TestCase):
         numpy.testing.assert_array_equal(again.contact_frequencies, model.contact_frequencies)
         self.assertEqual(len(model.mapping_loss), len(model.free_frequencies))
 
+    def test_damping_ratios_are_those_of_the_table_or_of_the_configuration(self):
+        table = ONE_MODE.replace("participation: [1.2]", "participation: [1.2], damping_ratio: [0.007]")
+        for text, expected in ((ONE_MODE, 0.02), (table, 0.007)):
+            model = vibro_impact.Model(text % 1.0)
+            numpy.testing.assert_allclose(model.free_damping_ratios, [expected], rtol=1e-15)
+        model = vibro_impact.load_model(LIMITING_CASE)
+        self.assertEqual(len(model.free_damping_ratios), len(model.free_frequencies))
+
     def test_configurations_that_are_none(self):
         missing = os.path.join(self.folder, "nowhere.yaml")
         self.assert_refused([missing], vibro_impact.load_model, missing)

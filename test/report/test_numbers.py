@@ -168,6 +168,16 @@ class LinearRun(unittest.TestCase):
         self.assertLess(magnitude, 0.03)
         self.assertLess(angle, 2.0)
 
+    def test_the_resolution_is_that_of_the_least_damped_mode(self):
+        text = (
+            "beam1: {modal_table: {frequency_hz: [10.0, 40.0, 90.0], contact_deflection: [0.5, 0.4, 0.3],"
+            " participation: [1.2, 0.3, 0.1], damping_ratio: [0.05, 0.004, 0.02]}}\nbeam2: rigid\ncontact: {stiffness:"
+            " 4.0e+4, clearance: 0.01}\ndamping: {free: 0.03, contact: 0.05}\nbasis: {type: conjoined, modes_free: 3,"
+            " modes_contact: 3}\n"
+        )
+        recording = types.SimpleNamespace(models=[types.SimpleNamespace(configuration=text)])
+        self.assertAlmostEqual(model.bandwidth(recording), 2.0 * 0.004 * 40.0, places=12)
+
     def test_no_closed_form_where_the_contact_opens_and_closes(self):
         recording = types.SimpleNamespace(models=[None])
         self.assertEqual(model.linear_state(recording, True, False), "")

@@ -1,7 +1,6 @@
 """What the model of a recording says of its linear motions."""
 
 import numpy as np
-import yaml
 
 import vibro_impact
 
@@ -12,10 +11,11 @@ IMAGES = 4
 
 
 def bandwidth(recording):
-    """Half-power bandwidth 2 zeta f of the lowest resonance while apart, Hz."""
-    frequencies = np.asarray(recording.models[0].free_frequencies)
-    damping = float(yaml.safe_load(recording.models[0].configuration)["damping"]["free"])
-    return 2.0 * max(damping, LEAST_DAMPING) * float(np.min(frequencies[frequencies > 0.0]))
+    """Least half-power bandwidth 2 zeta f of the resonances while apart, Hz: a modal table may damp each mode in its own
+    way."""
+    model = vibro_impact.Model(recording.models[0].configuration)
+    frequency, damping = model.free_frequencies, np.maximum(model.free_damping_ratios, LEAST_DAMPING)
+    return float(np.min((2.0 * damping * frequency)[frequency > 0.0]))
 
 
 def linear_state(recording, touched, pressed):
