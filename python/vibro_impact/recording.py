@@ -62,9 +62,10 @@ class Recording:
 
 
 def bag_paths(bags):
-    """The list of paths that one path or a list of them means; a path is a string or an os.PathLike."""
+    """The list of paths that one path or a list of them means, as bytes, for a name need not be text; a path is a string
+    or an os.PathLike."""
     one = isinstance(bags, (str, bytes, os.PathLike))
-    return [os.fsdecode(path) for path in ([bags] if one else bags)]
+    return [os.fsencode(path) for path in ([bags] if one else bags)]
 
 
 def read_bag(bags, namespace="", excitation="", stream=None, progress=None):

@@ -12,6 +12,13 @@
 
 namespace vibro_impact::python
 {
+/// A text from outside, what is not UTF-8 in it replaced.
+inline pybind11::str textOf(const std::string& text)
+{
+  return pybind11::reinterpret_steal<pybind11::str>(
+      PyUnicode_DecodeUTF8(text.data(), static_cast<pybind11::ssize_t>(text.size()), "replace"));
+}
+
 /// From here on config::Error is vibro_impact.Error in Python.
 inline void registerErrors()
 {
@@ -27,7 +34,8 @@ inline void registerErrors()
         }
         catch (const config::Error& error)
         {
-          PyErr_SetString(pybind11::module::import("vibro_impact.error").attr("Error").ptr(), error.what());
+          PyErr_SetObject(pybind11::module::import("vibro_impact.error").attr("Error").ptr(),
+                          textOf(error.what()).ptr());
         }
       });
 }

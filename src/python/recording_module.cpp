@@ -75,7 +75,7 @@ py::list lossesOf(const std::vector<graph::Loss>& losses)
   py::list list;
   for (const graph::Loss& loss : losses)
   {
-    list.append(py::make_tuple(loss.first, loss.last, loss.reason));
+    list.append(py::make_tuple(loss.first, loss.last, textOf(loss.reason)));
   }
   return list;
 }
@@ -116,7 +116,7 @@ py::list leftOut(const graph::Extraction& extraction)
   py::list list;
   for (const graph::LeftOutStep& step : extraction.left_out)
   {
-    list.append(py::make_tuple(step.omega_star, step.first, step.last, step.reason));
+    list.append(py::make_tuple(step.omega_star, step.first, step.last, textOf(step.reason)));
   }
   return list;
 }
@@ -163,7 +163,7 @@ py::list startsOf(const std::vector<StreamStart>& starts)
   py::list list;
   for (const StreamStart& start : starts)
   {
-    list.append(py::make_tuple(start.seq, cause(start), start.reason));
+    list.append(py::make_tuple(start.seq, cause(start), textOf(start.reason)));
   }
   return list;
 }
@@ -171,12 +171,12 @@ py::list startsOf(const std::vector<StreamStart>& starts)
 py::dict topicsOf(const graph::RecordedTopics& topics)
 {
   py::dict names;
-  names["base_excitation"] = topics.base_excitation;
-  names["gap"] = topics.gap;
-  names["contact_force"] = topics.contact_force;
-  names["impact"] = topics.impact;
-  names["model_info"] = topics.model_info;
-  names["stream_start"] = topics.stream_start;
+  names["base_excitation"] = textOf(topics.base_excitation);
+  names["gap"] = textOf(topics.gap);
+  names["contact_force"] = textOf(topics.contact_force);
+  names["impact"] = textOf(topics.impact);
+  names["model_info"] = textOf(topics.model_info);
+  names["stream_start"] = textOf(topics.stream_start);
   return names;
 }
 
@@ -190,8 +190,11 @@ void defineRecording(py::module& module)
       .def_readonly("restarts", &graph::RecordingSummary::restarts, "of the simulation from rest");
 
   py::class_<ModelInfo>(module, "Model", "What the simulator computed with from a sample on.")
-      .def_readonly("version", &ModelInfo::version, "of the package that computed")
-      .def_readonly("configuration", &ModelInfo::configuration, "the whole configuration as YAML text")
+      .def_property_readonly(
+          "version", [](const ModelInfo& info) { return textOf(info.version); }, "of the package that computed")
+      .def_property_readonly(
+          "configuration", [](const ModelInfo& info) { return textOf(info.configuration); },
+          "the whole configuration as YAML text")
       .def_property_readonly(
           "free_frequencies", [](const ModelInfo& info) { return copyOf(info.free_frequencies); },
           "natural frequencies out of contact, Hz")
@@ -248,8 +251,10 @@ void defineRecording(py::module& module)
       .def_readonly("topic", &graph::ReplayDifference::topic)
       .def_readonly("place", &graph::ReplayDifference::place, "numbers of the block and the sample, or of the impact")
       .def_readonly("field", &graph::ReplayDifference::field, "of the message")
-      .def_readonly("recorded", &graph::ReplayDifference::recorded, "with 17 digits")
-      .def_readonly("recomputed", &graph::ReplayDifference::recomputed, "likewise");
+      .def_property_readonly(
+          "recorded", [](const graph::ReplayDifference& self) { return textOf(self.recorded); }, "with 17 digits")
+      .def_property_readonly(
+          "recomputed", [](const graph::ReplayDifference& self) { return textOf(self.recomputed); }, "likewise");
 
   py::class_<graph::ReplayReport>(module, "ReplayReport", "What came of recomputing a recording.")
       .def_readonly("difference", &graph::ReplayReport::difference,

@@ -172,6 +172,21 @@ class ReadBagTest(unittest.TestCase):
         self.assert_same(vibro_impact.read_bag(parts), self.run_)
         self.assert_same(vibro_impact.read_bag(tuple(reversed(parts))), self.run_)
 
+    def test_paths_and_texts_need_not_be_utf_8(self):
+        folder = os.fsencode(self.folder)
+        path = os.path.join(folder, b"caf\xe9.bag")
+        self.run_.of("model_info")[0][2].configuration = "caf\x01: 1"
+        self.run_.write(self.path)
+        with open(self.path, "rb") as file:
+            raw = file.read()
+        with open(path, "wb") as file:
+            file.write(raw.replace(b"caf\x01", b"caf\xe9"))
+        for form in (path, os.fsdecode(path), [os.fsdecode(path)]):
+            recording = vibro_impact.read_bag(form)
+            self.assert_same(recording, self.run_)
+            self.assertEqual(recording.models[0].configuration, "caf\ufffd: 1")
+        self.assert_refused(["caf\ufffd2.bag: no such file"], os.path.join(folder, b"caf\xe92.bag"))
+
     def test_namespaces(self):
         other = SyntheticBag(seed=2)
         self.run_.write(self.path, namespace="/rig1")
