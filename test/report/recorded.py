@@ -1,11 +1,19 @@
 """Bags of runs that the core computes, as shaker, simulator and rosbag leave them."""
 
+import os
+import subprocess
+import sys
+import tempfile
+
 import numpy
 import rosbag
 import rospy
 
 import vibro_impact
 from vibro_impact.msg import BaseExcitation, ContactForce, Gap, Impact, ModelInfo, StreamStart
+
+CONFIG = os.path.join(os.path.dirname(os.path.realpath(__file__)), "..", "..", "config")
+WRITE_SIGNAL = [path for path in sys.argv[1:] if os.path.basename(path) == "write_signal"]
 
 PERIOD = 2.0e-5
 BLOCK = 500
@@ -46,15 +54,33 @@ def random_drive(duration, deviation=10.0, seed=1):
     return deviation * numpy.random.RandomState(seed).standard_normal(int(round(duration / PERIOD)))
 
 
+def shipped_signal(name, duration=None):
+    """(samples, sample period) of a signal of config/excitation; `duration`: another length of it, s. The program's
+    argument is the tool write_signal."""
+    with open(os.path.join(CONFIG, "excitation", name + ".yaml"), encoding="utf-8") as file:
+        text = file.read()
+    if duration:
+        changed = text.replace("duration: 600.0", "duration: %r" % duration)
+        assert changed != text, name
+        text = changed
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "signal.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        subprocess.run([WRITE_SIGNAL[0], path, "--out", folder], check=True, stdout=subprocess.DEVNULL)
+        table = numpy.loadtxt(os.path.join(folder, "signal.csv"), delimiter=",", skiprows=1)
+    return table[:, 1], float(table[1, 0] - table[0, 0])
+
+
 def stamp_of(seconds):
     return START + rospy.Duration.from_sec(seconds)
 
 
-def write_bag(path, configuration_text, acceleration, lost_blocks=()):
-    """What the simulator answers to `acceleration`, and its impacts, in a bag. `lost_blocks`: numbers of blocks of the
-    gap that are not in it."""
+def write_bag(path, configuration_text, acceleration, lost_blocks=(), period=PERIOD):
+    """What the simulator answers to `acceleration`, samples `period` s apart, and its impacts, in a bag. `lost_blocks`:
+    numbers of blocks of the gap that are not in it."""
     model = vibro_impact.Model(configuration_text)
-    simulation = model.simulation(PERIOD)
+    simulation = model.simulation(period)
 
     def header(stamp):
         message = Gap().header
@@ -73,15 +99,15 @@ def write_bag(path, configuration_text, acceleration, lost_blocks=()):
         bag.write("/model_info", info, START)
         bag.write(
             "/stream_start",
-            StreamStart(header=header(START), seq=0, sample_period=PERIOD, cause=StreamStart.FIRST),
+            StreamStart(header=header(START), seq=0, sample_period=period, cause=StreamStart.FIRST),
             START,
         )
 
         def record(impacts, time):
             for impact in impacts:
-                sample = int(numpy.floor(impact["onset"] / PERIOD))
+                sample = int(numpy.floor(impact["onset"] / period))
                 message = Impact(
-                    header=header(stamp_of(impact["onset"])), seq=sample, offset=impact["onset"] - sample * PERIOD
+                    header=header(stamp_of(impact["onset"])), seq=sample, offset=impact["onset"] - sample * period
                 )
                 for field in impact.dtype.names:
                     if field != "onset":
@@ -91,11 +117,11 @@ def write_bag(path, configuration_text, acceleration, lost_blocks=()):
         for number, first in enumerate(range(0, len(acceleration), BLOCK)):
             samples = acceleration[first : first + BLOCK]
             gap, force, impacts = simulation.advance(samples)
-            time = stamp_of(first * PERIOD)
-            head = dict(header=header(time), seq=first, sample_period=PERIOD)
+            time = stamp_of(first * period)
+            head = dict(header=header(time), seq=first, sample_period=period)
             bag.write("/base_excitation", BaseExcitation(acceleration=samples, **head), time)
             if number not in lost_blocks:
                 bag.write("/gap", Gap(gap=gap, **head), time)
             bag.write("/contact_force", ContactForce(force=force, **head), time)
             record(impacts, time)
-        record(simulation.finish(), stamp_of(len(acceleration) * PERIOD))
+        record(simulation.finish(), stamp_of(len(acceleration) * period))

@@ -15,6 +15,8 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, HERE)
 import recorded  # noqa: E402
 
+import vibro_impact  # noqa: E402
+
 SCRIPT = os.path.join(HERE, "..", "..", "scripts", "report")
 
 
@@ -74,7 +76,16 @@ class Command(unittest.TestCase):
     def test_says_how_it_is_used(self):
         result = self.report("--help")
         self.assertEqual(result.returncode, 0)
-        for option in ("--out", "--with", "--namespace", "--excitation", "--step", "--resolution", "--no-replay"):
+        for option in (
+            "--out",
+            "--with",
+            "--namespace",
+            "--excitation",
+            "--step",
+            "--resolution",
+            "--drive",
+            "--no-replay",
+        ):
             self.assertIn(option, result.stdout)
 
     def test_a_stepped_sine_gives_responses_and_no_frequency_response_function(self):
@@ -111,6 +122,52 @@ class Command(unittest.TestCase):
         self.assert_says(text, "the contact is never reached")
         found = re.search(r"at (\d+) lines, H<sub>1</sub> is within", text)
         self.assertGreater(int(found.group(1)), 100)
+
+    def test_the_packages_own_noise_is_random_though_it_holds_what_looks_like_steps(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        bag = os.path.join(folder.name, "random.bag")
+        with open(os.path.join(recorded.CONFIG, "ship_tube.yaml"), encoding="utf-8") as file:
+            configuration = file.read()
+        acceleration, period = recorded.shipped_signal("iec_60068_2_64_random", 60.0)
+        recorded.write_bag(bag, configuration, acceleration, period=period)
+        found = vibro_impact.extract_responses(bag)
+        self.assertGreater(len(found.responses), 3)
+        self.assertGreater(found.covered, 0.0)
+        self.assertLess(found.covered, 0.1)
+        self.assertAlmostEqual(
+            found.covered,
+            (
+                sum((end - start) / period for start, end in found.steps)
+                + sum(last - first for _, first, last, _ in found.left_out)
+            )
+            / len(acceleration),
+            places=6,
+        )
+        text, data = self.page(bag, "--no-replay")
+        self.assert_says(text, "period map, stroboscopic diagram")
+        self.assert_says(text, "Left out: steps cover only %.2g %% of the samples." % (100.0 * found.covered))
+        self.assert_says(text, "random: about 5")
+        self.assertIn("frf_gap", data["charts"])
+        self.assertIn("frf_force", data["charts"])
+        # What the user says is what is done.
+        text, data = self.page(bag, "--no-replay", "--drive", "steps")
+        self.assertEqual(len(data["segments"]), len(found.responses))
+        self.assertNotIn("frf_gap", data["charts"])
+        self.assert_says(text, "steps of constant frequency")
+        text, data = self.page(bag, "--no-replay", "--drive", "other")
+        self.assert_says(text, "the drive is not random (other, as --drive says)")
+        self.assert_says(text, "Left out: the drive was said to be other (--drive).")
+        self.assertNotIn("frf_gap", data["charts"])
+
+    def test_the_kind_of_the_drive_can_be_given(self):
+        text, data = self.page(self.stepped, "--drive", "random", "--no-replay")
+        self.assertIn("frf_gap", data["charts"])
+        self.assertNotIn("impulse_response", data["charts"])
+        self.assert_says(text, "random, as --drive says")
+        os.unlink(self.out)
+        self.assert_refused(self.report(self.linear, "--out", self.out, "--drive", "steps"), 1, "--drive", "no steps")
+        self.assert_refused(self.report(self.linear, "--out", self.out, "--drive", "sine"), 2, "--drive", "sine", "random")
 
     def test_the_resolution_can_be_given(self):
         text, _ = self.page(self.linear, "--resolution", "50")
@@ -170,4 +227,4 @@ class Command(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=[a for a in sys.argv if a not in recorded.WRITE_SIGNAL])

@@ -25,6 +25,7 @@ from vibro_impact.report import (
     spectral_charts,
     step_data,
 )  # noqa: E402
+from vibro_impact.report import run as runs  # noqa: E402
 
 PERIOD = 1.0e-3
 
@@ -209,17 +210,51 @@ class Spectra(unittest.TestCase):
         signal[1024:2048] = np.nan
         self.assertTrue(np.isnan(spectra.spectrogram(signal, PERIOD, 20, 512)[2][:, 1]).all())
 
+    def assert_random(self, wanted, signal, period=PERIOD):
+        found = spectra.spectral_lines(signal, period)
+        self.assertEqual(runs.is_random(found), wanted, found)
+        return found
+
     def test_tells_a_random_drive_from_a_sine_and_a_sweep(self):
         time = PERIOD * np.arange(200000)
-        self.assertLess(spectra.spectral_lines(np.sin(2 * np.pi * 41.3 * time)), 4.0)
-        self.assertLess(spectra.spectral_lines(scipy.signal.chirp(time, 5.0, 200.0, 100.0, "logarithmic")), 16.0)
-        self.assertGreater(spectra.spectral_lines(np.random.RandomState(1).standard_normal(200000)), 500.0)
+        noise = np.random.RandomState(1).standard_normal(200000)
+        self.assertLess(self.assert_random(False, np.sin(2 * np.pi * 41.3 * time)).lines, 4.0)
+        chirp = scipy.signal.chirp(time, 5.0, 200.0, 100.0, "logarithmic")
+        self.assertLess(self.assert_random(False, chirp).lines, 6.0)
+        for length in (1000, 5000, 20000):
+            fast = scipy.signal.chirp(time[:length], 5.0, time[length - 1], 200.0)
+            self.assertLess(self.assert_random(False, fast).lines, 6.0)
+        # Half of the lines of a segment share the power, whatever the band.
+        self.assertAlmostEqual(self.assert_random(True, noise).lines / spectra.BAND_LINES, 0.5, delta=0.1)
         band = scipy.signal.butter(4, (10.0, 40.0), "bandpass", fs=1.0 / PERIOD, output="sos")
-        self.assertGreater(
-            spectra.spectral_lines(scipy.signal.sosfilt(band, np.random.RandomState(1).standard_normal(200000))), 40.0
-        )
-        self.assertIsNone(spectra.spectral_lines(np.zeros(1000)))
-        self.assertIsNone(spectra.spectral_lines(np.full(100000, np.nan)))
+        found = self.assert_random(True, scipy.signal.sosfilt(band, noise))
+        self.assertAlmostEqual(found.lines / spectra.BAND_LINES, 0.5, delta=0.1)
+        self.assertIsNone(spectra.spectral_lines(np.zeros(1000), PERIOD))
+        self.assertIsNone(spectra.spectral_lines(np.full(100000, np.nan), PERIOD))
+        for length in (1, 2, 64, 255):
+            self.assertIsNone(spectra.spectral_lines(noise[:length], PERIOD))
+
+    def test_a_random_drive_is_random_at_any_sample_rate_and_with_losses(self):
+        random = np.random.RandomState(1)
+        for rate in (500.0, 5000.0, 50000.0):
+            band = scipy.signal.butter(6, (2.0, 100.0), "bandpass", fs=rate, output="sos")
+            noise = scipy.signal.sosfilt(band, random.standard_normal(int(30.0 * rate)))
+            found = self.assert_random(True, noise, 1.0 / rate)
+            self.assertAlmostEqual(found.lines / spectra.BAND_LINES, 0.5, delta=0.1)
+        noise[:: int(0.5 * rate)] = np.nan
+        self.assert_random(True, noise, 1.0 / rate)
+
+    @unittest.skipUnless(recorded.WRITE_SIGNAL, "the tool write_signal is not given")
+    def test_judges_the_signals_of_the_package(self):
+        for name, wanted in (
+            ("iec_60068_2_64_random", True),
+            ("half_sine_shock", False),
+            ("terminal_peak_shock", False),
+        ):
+            found = self.assert_random(wanted, *recorded.shipped_signal(name))
+            if not wanted:  # for a shock has as many lines, but is silent most of the time
+                self.assertLess(found.loud, 0.3)
+        self.assert_random(True, *recorded.shipped_signal("iec_60068_2_64_random", 20.0))
 
     def test_merging_lines_keeps_the_greatest(self):
         merged, run = spectra.largest_of_each(np.array([1.0, 5.0, 2.0, 3.0, 4.0]), 2)
@@ -336,4 +371,4 @@ class Charts(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=[a for a in sys.argv if a not in recorded.WRITE_SIGNAL])

@@ -61,6 +61,11 @@ def parse(arguments):
         help="spacing of the lines of frequency-response functions (default: by the damping; stated in the page)",
     )
     parser.add_argument(
+        "--drive",
+        choices=runs.DRIVES,
+        help="what the drive is, which decides what is shown of it (default: found out; said in the page)",
+    )
+    parser.add_argument(
         "--no-replay", dest="replay", action="store_false", help="do not recompute the recording to check it"
     )
     return parser.parse_args(arguments)
@@ -97,11 +102,10 @@ def make(options):
     if options.resolution is not None and not 1e-6 <= options.resolution <= 1e6:
         raise Refused("--resolution: %g Hz is out of range, allowed is 1e-6 to 1e6" % options.resolution)
     suffix = ", first run" if options.other else ""
-    read = [runs.read(options.bags, options.namespace, options.excitation, options.replay, suffix, stage)]
+    common = (options.namespace, options.excitation, options.replay)
+    read = [runs.read(options.bags, *common, suffix, options.drive, stage)]
     if options.other:
-        read.append(
-            runs.read(options.other, options.namespace, options.excitation, options.replay, ", second run", stage)
-        )
+        read.append(runs.read(options.other, *common, ", second run", options.drive, stage))
     text = document.make(read, options, stage)
     write(options.out, text)
     stage("written to %s, %.1f MB" % (options.out, os.path.getsize(options.out) / 1e6))

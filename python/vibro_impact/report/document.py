@@ -30,18 +30,34 @@ def utc(stamp):
     return moment.strftime("%Y-%m-%d %H:%M:%S") + ".%06d UTC" % (stamp[1] // 1000)
 
 
+def stepped(run):
+    return run.drive == "steps"
+
+
 def drive_words(run):
-    if run.stepped:
+    told = ", as --drive says" if run.told else ""
+    if stepped(run):
         frequencies = [segment.frequency for segment in run.segments]
-        return "%d steps of constant frequency, %.4g to %.4g Hz" % (
+        return "%d steps of constant frequency, %.4g to %.4g Hz%s" % (
             len(frequencies),
             min(frequencies),
             max(frequencies),
+            told,
         )
-    if runs.is_random(run):
-        return "random: about %d lines share the power of a segment of 4096 samples" % round(run.drive_lines)
-    if run.drive_lines is None:
-        return "none"
+    lines = run.spectral_lines
+    if run.drive == "random":
+        if not lines:
+            return "random" + told
+        words = "random%s: about %d lines share the power of a segment of %.3g s"
+        return words % (told, round(lines.lines), lines.duration)
+    if told:
+        return "other" + told
+    if not lines:
+        known = run.recording.acceleration[np.isfinite(run.recording.acceleration)]
+        return "none" if len(known) == 0 or known.min() == known.max() else "too short, or too often lost, to be judged"
+    if lines.loud < runs.RANDOM_SHARE:
+        silent = 100.0 * (1.0 - lines.loud)
+        return "neither steps of constant frequency nor random: silent for %.3g %% of the time" % silent
     return "neither steps of constant frequency nor random"
 
 
@@ -167,7 +183,7 @@ def label(number, segment, period, total):
 def chosen_step(run, wanted):
     """Number of the segment that is shown first."""
     if wanted is None:
-        if not run.stepped:
+        if not stepped(run):
             return 0
         return int(np.argmax([np.max(impacts["impulse"], initial=0.0) for impacts in run.captured]))
     try:
@@ -179,7 +195,7 @@ def chosen_step(run, wanted):
         omega_star = float(wanted)
     except ValueError:
         raise Refused("--step: '%s' is neither the number of a step nor omega*" % wanted)
-    if not run.stepped:
+    if not stepped(run):
         raise Refused(
             "--step: %s is an omega*, but the drive has no steps; allowed is a number from 1 to %d"
             % (wanted, len(run.segments))
@@ -196,24 +212,24 @@ def chosen_step(run, wanted):
 
 def responses(page, read):
     run = read[0]
-    if not run.stepped:
+    if not stepped(run):
         page.left_out("impulse", "Impulse response, period map, stroboscopic diagram", run.without_steps + ".")
         return
-    stepped = [each for each in read if each.stepped]
-    if len(stepped) < len(read):
+    shown = [each for each in read if stepped(each)]
+    if len(shown) < len(read):
         page.put(
             "<p class='left-out'>The second run is left out of the responses: %s.</p>"
             % html.escape(read[1].without_steps)
         )
-    if any(len(impacts) for each in stepped for impacts in each.captured):
+    if any(len(impacts) for each in shown for impacts in each.captured):
         page.section("impulse", "Impulse response")
-        page.chart(response_charts.impulse_response(stepped))
+        page.chart(response_charts.impulse_response(shown))
     else:
         page.left_out("impulse", "Impulse response", "no step has an impact in its steady response.")
     page.section("period", "Period map")
-    page.chart(response_charts.period_map(stepped))
+    page.chart(response_charts.period_map(shown))
     page.section("strobe", "Stroboscopic diagram")
-    page.chart(response_charts.stroboscopic(stepped))
+    page.chart(response_charts.stroboscopic(shown))
 
 
 def histograms(page, run):
@@ -276,18 +292,18 @@ STEP_CHARTS = (
 
 
 def steps(page, run, options):
-    page.section("step", "A chosen step" if run.stepped else "A chosen part")
+    page.section("step", "A chosen step" if stepped(run) else "A chosen part")
     chosen = chosen_step(run, options.step)
     page.put(
         "<div class='chooser'><label for='step-choice'>%s</label><select id='step-choice'></select>"
         "<button type='button' id='step-back'>Previous</button><button type='button' id='step-on'>Next</button></div>"
-        % ("Step of the drive" if run.stepped else "Part of the recording")
+        % ("Step of the drive" if stepped(run) else "Part of the recording")
     )
-    if not run.stepped:
+    if not stepped(run):
         page.put("<p>The drive has no steps; these are %d equal parts of the recording.</p>" % len(run.segments))
 
     for key, title, caption, height in STEP_CHARTS:
-        page.put(figure(key, title, caption % {"step": "step" if run.stepped else "part"}, height))
+        page.put(figure(key, title, caption % {"step": "step" if stepped(run) else "part"}, height))
     held = step_data.embedded(run.segments, chosen)
     if len(held) < len(run.segments):
         page.put(
@@ -300,7 +316,7 @@ def waterfalls(page, run):
     page.section("waterfall", "Waterfall")
     made = [
         spectral_charts.waterfall(
-            run.recording.gap, run.recording.sample_period, run.segments if run.stepped else [], "gap", "gap", "m"
+            run.recording.gap, run.recording.sample_period, run.segments if stepped(run) else [], "gap", "gap", "m"
         ),
     ]
     if touched(run):
@@ -308,7 +324,7 @@ def waterfalls(page, run):
             spectral_charts.waterfall(
                 run.recording.contact_force,
                 run.recording.sample_period,
-                run.segments if run.stepped else [],
+                run.segments if stepped(run) else [],
                 "force",
                 "contact force",
                 "N",
@@ -325,7 +341,7 @@ def waterfalls(page, run):
 
 def frequency_responses(page, run, resolution):
     title = "Frequency-response functions"
-    if not runs.is_random(run):
+    if run.drive != "random":
         page.left_out("frf", title, "the drive is not random (%s)." % drive_words(run))
         return
     recording = run.recording
@@ -396,7 +412,7 @@ def make(read, options, stage):
     stage("frequency-response functions")
     frequency_responses(page, run, options.resolution)
 
-    stage("data of %d %s" % (len(held), "steps" if run.stepped else "parts"))
+    stage("data of %d %s" % (len(held), "steps" if stepped(run) else "parts"))
     factor_gap, unit_gap = prefix(greatest(recording.gap))
     factor_force, unit_force = prefix(greatest(recording.contact_force))
     page.data.update(
@@ -405,7 +421,7 @@ def make(read, options, stage):
             "gap": {"factor": factor_gap, "text": unit_gap + "m"},
             "force": {"factor": factor_force, "text": unit_force + "N"},
         },
-        part="step" if run.stepped else "part",
+        part="step" if stepped(run) else "part",
         chosen=chosen,
         segments=[
             {

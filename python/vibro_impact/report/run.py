@@ -8,21 +8,25 @@ import vibro_impact
 from vibro_impact.report import segments as parts
 from vibro_impact.report import spectra
 
-# Lines that share the power of a random drive, at least, and of a sine or a slow sweep, at most, in a segment of 4096
-# samples.
-RANDOM_LINES = 16.0
+# Lines that share the power of a random drive in a segment, at least (spectra.spectral_lines); a sweep has no more than
+# half as many.
+RANDOM_LINES = 12.0
+# A random drive is there most of the time, a shock is not.
+RANDOM_SHARE = 0.5
+# Share of the samples that steps must cover: noise holds stretches that look like a few cycles of a sine.
+STEPPED_SHARE = 0.5
+# What a drive can be, by --drive.
+DRIVES = ("steps", "random", "other")
 
 # recording; segments; captured: for each segment the impacts that made its response; star: I* over an impulse in N s;
-# stepped: whether the segments are steps of the drive; without_steps: why they are not; left_out: steps that were not
-# evaluated; replay, replay_error: what came of the replay check; drive_lines: how many spectral lines share the drive's
-# power; suffix: how labels call the run
+# drive: one of DRIVES, the segments are the steps of a drive of steps; told: whether the user has said so;
+# without_steps: why there are no steps; left_out: steps that were not evaluated; replay, replay_error: what came of the
+# replay check; spectral_lines: how the drive was judged, None of a drive of steps and where it could not be; suffix: how
+# labels call the run
 Run = namedtuple(
-    "Run", "bags recording segments captured star stepped without_steps left_out replay replay_error drive_lines suffix"
+    "Run",
+    "bags recording segments captured star drive told without_steps left_out replay replay_error spectral_lines suffix",
 )
-
-
-def is_random(run):
-    return not run.stepped and run.drive_lines is not None and run.drive_lines > RANDOM_LINES
 
 
 def captured_of(responses, impacts, first_time):
@@ -39,24 +43,42 @@ def impulse_scale(responses):
     return float(greatest["impulse_star_mean"] / greatest["impulse_mean"]) if greatest["impulse_mean"] > 0.0 else 0.0
 
 
-def read(bags, namespace, excitation, replay, suffix, stage):
-    """Reads one run. `stage` is called with what is being done."""
+def is_random(lines):
+    """Whether a signal with these spectra.SpectralLines is random."""
+    return lines is not None and lines.lines > RANDOM_LINES and lines.loud >= RANDOM_SHARE
+
+
+def read(bags, namespace, excitation, replay, suffix, drive, stage):
+    """Reads one run. `drive`: what its drive is, one of DRIVES; None: to be found out. `stage` is called with what is
+    being done."""
     stage("reading " + " ".join(bags))
     recording = vibro_impact.read_bag(bags, namespace=namespace, excitation=excitation)
     stage("finding the steps of the drive")
-    drive_lines = spectra.spectral_lines(recording.acceleration)
-    left_out = []
-    without_steps = ""
-    try:
-        found = vibro_impact.extract_responses(bags, allow_gaps=True, namespace=namespace, excitation=excitation)
+    found, without_steps = None, ""
+    if drive in (None, "steps"):
+        try:
+            found = vibro_impact.extract_responses(bags, allow_gaps=True, namespace=namespace, excitation=excitation)
+        except vibro_impact.Error as error:
+            if drive:
+                raise vibro_impact.Error("--drive: is steps, but there are none: %s" % error)
+            without_steps = str(error)
+        if not drive and found and found.covered <= STEPPED_SHARE:
+            without_steps = "steps cover only %.2g %% of the samples" % (100.0 * found.covered)
+            found = None
+    else:
+        without_steps = "the drive was said to be %s (--drive)" % drive
+    lines = None
+    if found:
+        kind = "steps"
         segments = parts.of_steps(found.steps, found.responses, recording)
         captured = captured_of(found.responses, found.impacts, recording.first * recording.sample_period)
         star = impulse_scale(found.responses)
         left_out = found.left_out
-    except vibro_impact.Error as error:
-        without_steps = str(error)
+    else:
+        lines = spectra.spectral_lines(recording.acceleration, recording.sample_period)
+        kind = drive or ("random" if is_random(lines) else "other")
         segments = parts.equal_parts(recording)
-        captured, star = [], 0.0
+        captured, star, left_out = [], 0.0, []
     report, replay_error = None, "The replay check was left out (--no-replay)."
     if replay:
         stage("recomputing the recording")
@@ -70,11 +92,12 @@ def read(bags, namespace, excitation, replay, suffix, stage):
         segments,
         captured,
         star,
-        not without_steps,
+        kind,
+        bool(drive),
         without_steps,
         left_out,
         report,
         replay_error,
-        drive_lines,
+        lines,
         suffix,
     )

@@ -17,6 +17,16 @@ FrequencyResponse = namedtuple(
     "frequency auto_excitation auto_response h1 h2 coherence segments averages length resolution sample_period",
 )
 
+# lines: how many share the power of a segment, as the median over the loud ones; duration of a segment, s; loud: share of
+# the segments that are not silent
+SpectralLines = namedtuple("SpectralLines", "lines duration loud")
+# Lines of a band that a segment shall have, by which it is judged whether a signal is random.
+BAND_LINES = 96.0
+# Shortest segment that is transformed, samples.
+LEAST_SEGMENT = 16
+# A segment is silent below this share of the mean power of all.
+LOUD = 1e-3
+
 
 def hann(length):
     """The Hann window as a period of a Fourier analysis (ISO 18431-2)."""
@@ -144,19 +154,49 @@ def spectrogram(signal, sample_period, columns, length):
     return np.array(times), np.fft.rfftfreq(length, sample_period), scale * np.sqrt(np.array(power).T)
 
 
-def spectral_lines(signal, length=4096):
-    """How many lines share the power of a segment of the signal, (sum P)^2/sum P^2, as the median over segments: two
-    for a sine, as many as the band has (by half of the chi-square scatter) for a random signal. None where there is no
-    power. """
-    length = min(length, len(signal) // 4)
-    starts = whole_segments((signal,), length) if length >= 16 else ()
-    if len(starts) == 0:
+def evenly(starts, most):
+    """At most so many of them, evenly spread."""
+    return starts[:: -(-len(starts) // most)] if len(starts) else starts
+
+
+def powers(signal, length, most):
+    """|X|^2 of the lines of segments of `length` samples, one after the other, at most `most`, evenly spread over those
+    without a loss; with a Hann window, each without its mean."""
+    window = hann(length)
+    for start in evenly(whole_segments((signal,), length), most):
+        samples = signal[start : start + length]
+        yield np.abs(np.fft.rfft((samples - samples.mean()) * window)) ** 2
+
+
+def participation(power):
+    """How many lines share the power, (sum P)^2/sum P^2; 0 where there is none."""
+    squares = float(np.sum(power**2))
+    return float(np.sum(power)) ** 2 / squares if squares > 0.0 else 0.0
+
+
+def spectral_lines(signal, sample_period):
+    """How random a signal is, whatever its sample rate: SpectralLines, or None where there is no power or no stretch
+    without a loss.
+
+    A segment lasts long enough for a stationary noise of the signal's bandwidth to have about BAND_LINES lines in it,
+    half of which share its power, as they scatter like chi-square; at most a sixteenth of the whole. A sine has two, a
+    sweep few, as it goes through little of its band in a segment. Of a shock, which has many, most segments are silent.
+    """
+    longest = min(len(signal) // 16, 1 << 21)
+    length = 2 * (min(longest, 1 << 17) // 2)
+    while length >= LEAST_SEGMENT and len(whole_segments((signal,), length)) == 0:
+        length = 2 * (length // 4)
+    if length < LEAST_SEGMENT:
         return None
-    starts = starts[:: max(1, len(starts) // 400)]
-    rows = signal[starts[:, None] + np.arange(length)]
-    power = np.abs(np.fft.rfft((rows - rows.mean(axis=1, keepdims=True)) * hann(length))) ** 2
-    total = power.sum(axis=1)
-    loud = total > 1e-6 * total.max()
+    lines = participation(sum(powers(signal, length, 64)))
+    if lines == 0.0:
+        return None
+    bandwidth = lines / (length * sample_period)
+    wanted = 2 * int(min(longest, max(LEAST_SEGMENT, BAND_LINES / (bandwidth * sample_period))) / 2)
+    if len(whole_segments((signal,), wanted)):
+        length = wanted
+    found = np.array([(power.sum(), participation(power)) for power in powers(signal, length, 400)])
+    loud = found[:, 0] > LOUD * found[:, 0].mean()
     if not loud.any():
         return None
-    return float(np.median(total[loud] ** 2 / np.sum(power[loud] ** 2, axis=1)))
+    return SpectralLines(float(np.median(found[loud, 1])), length * sample_period, float(loud.mean()))
