@@ -106,11 +106,14 @@ def random_error(coherence, averages):
 
 
 def segment_length(samples, sample_period, bandwidth):
-    """Samples of a segment, a power of two: a resolution of an eighth of `bandwidth` (Hz, the half-power bandwidth of
-    the sharpest resonance; Bendat and Piersol's bias (B_e/B_r)^2/3 is 0.5 % there), less where fewer than 32 averages
-    would be left."""
-    wanted = 8.0 / (bandwidth * sample_period)
-    most = samples / 16.5
+    """Samples of a segment, a power of two: lines at most a sixteenth of `bandwidth` (Hz, the half-power bandwidth of the
+    sharpest resonance) apart, further where fewer than 32 averages would be left.
+
+    H1 is the response averaged over |W|^2 of the window, whose second moment is sigma^2 = df^2/3 for a Hann window and
+    lines df apart. Close to a resonance the response is 1/(1 + i x) of its peak, x = 2 (f - f_n)/B_r, so that H1 at the
+    peak is too small by the mean of x^2, (4/3)(df/B_r)^2, and so is the coherence: 0.5 % at a sixteenth."""
+    wanted = 16.0 / (bandwidth * sample_period)
+    most = samples / 17.5
     return 1 << max(6, int(np.floor(np.log2(min(2.0 ** np.ceil(np.log2(wanted)), most)))))
 
 
