@@ -4,6 +4,7 @@
 import json
 import os
 import re
+import stat
 import subprocess
 import sys
 import tempfile
@@ -217,6 +218,38 @@ class Command(unittest.TestCase):
             self.report(self.stepped, "--out", self.out, "--resolution", "nan"), 1, "--resolution", "nan"
         )
         self.assert_refused(self.report(self.stepped, "--out", self.out, "--namespace", "/nobody"), 1, "/nobody")
+
+    def test_writes_over_no_bag_and_no_device(self):
+        before = os.path.getsize(self.stepped), os.path.getmtime(self.stepped)
+        for bags, out in (
+            ([self.stepped], self.stepped),
+            ([self.linear, "--with", self.linear, self.stepped], self.stepped),
+            ([self.stepped], os.path.join(os.path.dirname(self.stepped), ".", os.path.basename(self.stepped))),
+        ):
+            result = self.report(*bags, "--out", out)
+            self.assert_refused(result, 1, "--out", out, "is a bag")
+            self.assertNotIn("reading", result.stderr)
+        self.assertEqual((os.path.getsize(self.stepped), os.path.getmtime(self.stepped)), before)
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        link, pipe = os.path.join(folder.name, "link.html"), os.path.join(folder.name, "pipe")
+        os.symlink(self.stepped, link)
+        os.mkfifo(pipe)
+        self.assert_refused(self.report(self.stepped, "--out", link), 1, "--out", link, "is a bag")
+        for path in (pipe, "/dev/null"):
+            result = self.report(self.stepped, "--out", path)
+            self.assert_refused(result, 1, "--out", path, "is a device or a pipe")
+            self.assertNotIn("reading", result.stderr)
+        self.assertTrue(stat.S_ISFIFO(os.stat(pipe).st_mode))
+        # A page that is there is replaced.
+        page, _ = self.page(self.quiet, "--no-replay")
+        self.assertEqual(self.page(self.quiet, "--no-replay")[0], page)
+
+    def test_refuses_a_step_that_is_none_before_it_reads(self):
+        for step in ("first", "0", "-2", "nan", "0.0", "-1.5", "nan.", ".inf", "", "1.2.3"):
+            result = self.report(self.stepped, "--out", self.out, "--step=" + step)
+            self.assert_refused(result, 1, "--step", "'%s'" % step, "from 1 on", "omega*")
+            self.assertNotIn("reading", result.stderr)
 
     def test_refuses_a_wrong_command_line(self):
         self.assert_refused(self.report("--out", self.out), 2, "BAG")

@@ -71,11 +71,24 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
+def check_out(path, bags):
+    """Refuses to write where there is no folder, something else than a file, or one of the bags."""
+    if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
+        raise Refused("--out: the folder of %s does not exist" % path)
+    if not os.path.exists(path):
+        return
+    if os.path.isdir(path):
+        raise Refused("--out: %s is a folder, not a file" % path)
+    if not os.path.isfile(path):
+        raise Refused("--out: %s is a device or a pipe, must be a file or not there yet" % path)
+    for bag in bags:
+        if os.path.exists(bag) and os.path.samefile(bag, path):
+            raise Refused("--out: %s is a bag of the recording, must be another file" % path)
+
+
 def write(path, text):
     """The whole file or none."""
     folder = os.path.dirname(os.path.abspath(path))
-    if os.path.isdir(path):
-        raise Refused("--out: %s is a folder, not a file" % path)
     temporary = None
     try:
         handle, temporary = tempfile.mkstemp(prefix=".report-", suffix=".html", dir=folder)
@@ -97,8 +110,9 @@ def make(options):
     def stage(words):
         print("%6.1f s  %s" % (time.monotonic() - begun, words), file=sys.stderr, flush=True)
 
-    if not os.path.isdir(os.path.dirname(os.path.abspath(options.out))):
-        raise Refused("--out: the folder of %s does not exist" % options.out)
+    check_out(options.out, options.bags + (options.other or []))
+    if options.step is not None:
+        document.step_asked_for(options.step)
     if options.resolution is not None and not 1e-6 <= options.resolution <= 1e6:
         raise Refused("--resolution: %g Hz is out of range, allowed is 1e-6 to 1e6" % options.resolution)
     suffix = ", first run" if options.other else ""

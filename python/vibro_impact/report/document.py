@@ -2,6 +2,7 @@
 
 import datetime
 import html
+import math
 import os
 
 import numpy as np
@@ -180,29 +181,36 @@ def label(number, segment, period, total):
     return "%d of %d: %.4g to %.4g s" % (number + 1, total, segment.first * period, segment.last * period)
 
 
+def step_asked_for(text):
+    """What --step means: the number of a step, from 1 on (int), or omega* (float)."""
+    try:
+        value = float(text) if "." in text else int(text)
+    except ValueError:
+        value = -1
+    if not (isinstance(value, int) and value >= 1 or isinstance(value, float) and 0.0 < value < math.inf):
+        raise Refused("--step: '%s' is neither the number of a step, from 1 on, nor omega* with a decimal point" % text)
+    return value
+
+
 def chosen_step(run, wanted):
     """Number of the segment that is shown first."""
     if wanted is None:
         if not stepped(run):
             return 0
         return int(np.argmax([np.max(impacts["impulse"], initial=0.0) for impacts in run.captured]))
-    try:
-        if "." not in wanted:
-            number = int(wanted)
-            if 1 <= number <= len(run.segments):
-                return number - 1
-            raise Refused("--step: there is no step %d, allowed is 1 to %d" % (number, len(run.segments)))
-        omega_star = float(wanted)
-    except ValueError:
-        raise Refused("--step: '%s' is neither the number of a step nor omega*" % wanted)
+    value = step_asked_for(wanted)
+    if isinstance(value, int):
+        if value <= len(run.segments):
+            return value - 1
+        raise Refused("--step: there is no step %d, allowed is 1 to %d" % (value, len(run.segments)))
     if not stepped(run):
         raise Refused(
             "--step: %s is an omega*, but the drive has no steps; allowed is a number from 1 to %d"
             % (wanted, len(run.segments))
         )
-    differences = [abs(segment.omega_star - omega_star) for segment in run.segments]
+    differences = [abs(segment.omega_star - value) for segment in run.segments]
     nearest = int(np.argmin(differences))
-    if not differences[nearest] <= 0.05 * max(abs(omega_star), 0.1):
+    if not differences[nearest] <= 0.05 * max(value, 0.1):
         raise Refused(
             "--step: no step has omega* %s, allowed is %.4g to %.4g"
             % (wanted, min(s.omega_star for s in run.segments), max(s.omega_star for s in run.segments))
