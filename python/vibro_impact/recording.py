@@ -68,6 +68,11 @@ def bag_paths(bags):
     return [os.fsencode(path) for path in ([bags] if one else bags)]
 
 
+def name_of(topic):
+    """The name of a topic or a name space as bytes; what is not UTF-8 is not found, and said to be so."""
+    return os.fsencode(topic)
+
+
 def read_bag(bags, namespace="", excitation="", stream=None, progress=None):
     """Reads a recording: a bag, or the list of the bags of a split one. Returns a Recording.
 
@@ -79,7 +84,7 @@ def read_bag(bags, namespace="", excitation="", stream=None, progress=None):
 
     Raises vibro_impact.Error if a bag is missing, damaged or holds no run.
     """
-    return Recording(_recording.read(bag_paths(bags), namespace, excitation, stream, progress))
+    return Recording(_recording.read(bag_paths(bags), name_of(namespace), name_of(excitation), stream, progress))
 
 
 def extract_responses(
@@ -109,8 +114,8 @@ def extract_responses(
     """
     return _recording.extract(
         bag_paths(bags),
-        namespace,
-        excitation,
+        name_of(namespace),
+        name_of(excitation),
         allow_gaps,
         acceleration_tolerance,
         shortest_step,
@@ -141,8 +146,8 @@ def check_replay(
     """
     return _recording.check(
         bag_paths(bags),
-        namespace,
-        excitation,
+        name_of(namespace),
+        name_of(excitation),
         max_acceleration,
         max_bridged_gap,
         max_step_back,

@@ -76,9 +76,9 @@ def stamp_of(seconds):
     return START + rospy.Duration.from_sec(seconds)
 
 
-def write_bag(path, configuration_text, acceleration, lost_blocks=(), period=PERIOD):
-    """What the simulator answers to `acceleration`, samples `period` s apart, and its impacts, in a bag. `lost_blocks`:
-    numbers of blocks of the gap that are not in it."""
+def write_bag(path, configuration_text, acceleration, lost_blocks=(), lost_forces=(), period=PERIOD):
+    """What the simulator answers to `acceleration`, samples `period` s apart, and its impacts, in a bag. `lost_blocks`,
+    `lost_forces`: numbers of blocks of the gap and of the contact force that are not in it."""
     model = vibro_impact.Model(configuration_text)
     simulation = model.simulation(period)
 
@@ -122,6 +122,7 @@ def write_bag(path, configuration_text, acceleration, lost_blocks=(), period=PER
             bag.write("/base_excitation", BaseExcitation(acceleration=samples, **head), time)
             if number not in lost_blocks:
                 bag.write("/gap", Gap(gap=gap, **head), time)
-            bag.write("/contact_force", ContactForce(force=force, **head), time)
+            if number not in lost_forces:
+                bag.write("/contact_force", ContactForce(force=force, **head), time)
             record(impacts, time)
         record(simulation.finish(), stamp_of(len(acceleration) * period))

@@ -45,6 +45,11 @@ class Command(unittest.TestCase):
         self.folder_out = out.name
         self.out = os.path.join(out.name, "page.html")
 
+    def folder_in(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        return folder.name
+
     def report(self, *arguments):
         return subprocess.run(
             [SCRIPT, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True
@@ -125,9 +130,7 @@ class Command(unittest.TestCase):
         self.assertGreater(int(found.group(1)), 100)
 
     def test_the_packages_own_noise_is_random_though_it_holds_what_looks_like_steps(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        bag = os.path.join(folder.name, "random.bag")
+        bag = os.path.join(self.folder_in(), "random.bag")
         with open(os.path.join(recorded.CONFIG, "ship_tube.yaml"), encoding="utf-8") as file:
             configuration = file.read()
         acceleration, period = recorded.shipped_signal("iec_60068_2_64_random", 60.0)
@@ -174,6 +177,74 @@ class Command(unittest.TestCase):
         text, _ = self.page(self.linear, "--resolution", "50")
         self.assert_says(text, "segments of 1000 samples overlapping by 50 %")
         self.assert_says(text, "resolution 50 Hz")
+
+    def test_a_resolution_that_leaves_few_averages_is_said_to(self):
+        text, _ = self.page(self.linear, "--resolution", "1", "--no-replay")
+        self.assert_says(text, "Few averages: 7 segments are worth 6.7 independent ones. Of fewer than 8")
+        text, _ = self.page(self.linear, "--resolution", "2", "--no-replay")
+        self.assertNotIn("Few averages", text)
+        text, data = self.page(self.linear, "--resolution", "0.26", "--no-replay")
+        self.assertNotIn("frf_gap", data["charts"])
+        self.assert_says(text, "Left out: only one stretch as long as a segment of 192308 samples (3.846 s) is without")
+        text, data = self.page(self.linear, "--resolution", "0.2", "--no-replay")
+        self.assert_says(
+            text, "Left out: the recording, 200000 samples, is shorter than a segment of 250000 samples (5 s)."
+        )
+
+    def test_a_force_that_is_lost_in_every_segment_is_left_out(self):
+        bag = os.path.join(self.folder_in(), "run.bag")
+        drive = recorded.random_drive(4.0)
+        recorded.write_bag(bag, recorded.configuration(clearance=2e-6), drive, lost_forces=range(0, 400, 2))
+        text, data = self.page(bag, "--no-replay")
+        self.assertIn("frf_gap", data["charts"])
+        self.assertNotIn("frf_force", data["charts"])
+        self.assert_says(
+            text, "That of the contact force is left out: there is a loss in every stretch as long as a segment of "
+        )
+        self.assert_says(text, "there is no stretch of 4096 samples in which the contact force is without a loss")
+
+    def test_a_configuration_that_cannot_be_used_is_shown_and_nothing_computed_from_it(self):
+        bag = os.path.join(self.folder_in(), "run.bag")
+        with open(self.linear, "rb") as file:
+            raw = file.read()
+        self.assertIn(b"clearance: 0.01", raw)
+        with open(bag, "wb") as file:
+            file.write(raw.replace(b"clearance: 0.01", b"cl\xe9arance: 0.01"))
+        text, data = self.page(bag)
+        self.assertIn("frf_gap", data["charts"])
+        self.assert_says(text, "No closed form is drawn along: the recorded configuration cannot be used: ")
+        self.assert_says(text, "The resolution is that for a damping ratio of 0.01.")
+        self.assert_says(text, "cl\ufffdarance: 0.01")
+        self.assert_says(text, "Not compared. ")
+
+    def test_a_recording_of_a_few_samples_gives_a_page(self):
+        bag = os.path.join(self.folder_in(), "run.bag")
+        for samples in (1, 2, 3, 15, 63, 64, 200):
+            with self.subTest(samples):
+                recorded.write_bag(bag, recorded.configuration(clearance=1e-2), recorded.random_drive(4.0)[:samples])
+                for drive in ((), ("--drive", "random"), ("--drive", "random", "--resolution", "1000")):
+                    text, data = self.page(bag, *drive)
+                    self.assertIn("overview", data["charts"])
+                    self.assertEqual("waterfall_gap" in data["charts"], samples >= 64)
+                self.assertEqual(any(key == "frf_gap" for key in data["charts"]), samples > 96)
+                if samples < 64:
+                    self.assert_says(text, "the recording has %d samples, a segment of a spectrum takes 64" % samples)
+
+    def test_a_bag_need_not_have_a_name_in_utf_8(self):
+        folder = os.fsencode(self.folder_in())
+        bag = os.path.join(folder, b"caf\xe9.bag")
+        with open(self.linear, "rb") as file, open(bag, "wb") as copy:
+            copy.write(file.read())
+        text, _ = self.page(bag)
+        self.assert_says(text, "<title>Vibro-impact run: caf\ufffd.bag</title>")
+        self.assert_says(text, "Identical: ")
+        out = os.path.join(os.fsencode(self.folder_out), b"\xe9.html")
+        self.assertEqual(self.report(self.quiet, "--out", out, "--no-replay").returncode, 0)
+        self.assertTrue(os.path.exists(out))
+        os.unlink(out)
+        os.unlink(self.out)
+        self.assert_refused(self.report(os.path.join(folder, b"\xe9.bag"), "--out", self.out), 1, "no such file")
+        self.assert_refused(self.report(bag, "--out", self.out, "--namespace", b"/\xe9"), 1, "/\ufffd")
 
     def test_losses_are_listed_and_their_steps_left_out(self):
         text, data = self.page(self.lossy)
@@ -230,9 +301,8 @@ class Command(unittest.TestCase):
             self.assert_refused(result, 1, "--out", out, "is a bag")
             self.assertNotIn("reading", result.stderr)
         self.assertEqual((os.path.getsize(self.stepped), os.path.getmtime(self.stepped)), before)
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        link, pipe = os.path.join(folder.name, "link.html"), os.path.join(folder.name, "pipe")
+        folder = self.folder_in()
+        link, pipe = os.path.join(folder, "link.html"), os.path.join(folder, "pipe")
         os.symlink(self.stepped, link)
         os.mkfifo(pipe)
         self.assert_refused(self.report(self.stepped, "--out", link), 1, "--out", link, "is a bag")

@@ -81,6 +81,11 @@ class FrequencyResponse(unittest.TestCase):
         self.assertTrue(np.isfinite(found.h1).all())
         self.assertIsNone(spectra.frequency_response(self.x, np.full(40000, np.nan), PERIOD, 1024))
 
+    def test_one_segment_alone_is_no_estimate(self):
+        self.assertIsNone(spectra.frequency_response(self.x, self.y, PERIOD, 40000))
+        self.assertIsNone(spectra.frequency_response(self.x, self.y, PERIOD, 40002))
+        self.assertEqual(spectra.frequency_response(self.x, self.y, PERIOD, 20000).segments, 3)
+
     def test_random_error_is_the_scatter_of_many_estimates(self):
         # 400 runs of their own noise; Bendat and Piersol's formula at their mean coherence.
         random = np.random.RandomState(5)
@@ -139,8 +144,16 @@ class LinearRun(unittest.TestCase):
         ]
         return recording, impacts
 
+    @staticmethod
+    def bandwidth(recording):
+        return model.bandwidth(recording, model.of_recording(recording)[0])
+
+    @staticmethod
+    def drawn(recording, state, frequency):
+        return model.receptance(model.of_recording(recording)[0], recorded.PERIOD, state, frequency)
+
     def estimate(self, recording):
-        length = spectra.segment_length(len(recording.gap), recorded.PERIOD, model.bandwidth(recording))
+        length = spectra.segment_length(len(recording.gap), recorded.PERIOD, self.bandwidth(recording))
         return spectra.frequency_response(recording.acceleration, recording.gap, recorded.PERIOD, length)
 
     def test_h1_is_the_closed_form(self):
@@ -154,7 +167,7 @@ class LinearRun(unittest.TestCase):
         self.assertLess(np.max(np.abs(np.degrees(np.angle(ratio)))), 2.0)
         # The page's own closed form is that of the model, and accounts for the straight lines between samples up to
         # Nyquist.
-        drawn = model.receptance(recording, model.linear_state(recording, False, False), found.frequency)
+        drawn = self.drawn(recording, model.linear_state(recording, False, False), found.frequency)
         wanted = self.closed_form(found.frequency[shown]) * np.sinc(found.frequency[shown] * recorded.PERIOD) ** 2
         np.testing.assert_allclose(drawn[shown], wanted, rtol=1e-3)
         lines, magnitude, angle = spectral_charts.agreement(found, drawn)
@@ -184,7 +197,7 @@ class LinearRun(unittest.TestCase):
         recording, _ = self.run_of(-1e-3, 20.0, skipped=2.0)
         self.assertGreater(recording.contact_force.min(), 0.0)
         found = self.estimate(recording)
-        drawn = model.receptance(recording, model.linear_state(recording, True, True), found.frequency)
+        drawn = self.drawn(recording, model.linear_state(recording, True, True), found.frequency)
         lines, magnitude, angle = spectral_charts.agreement(found, drawn)
         self.assertGreater(lines, 1000)
         self.assertLess(magnitude, 0.03)
@@ -198,7 +211,23 @@ class LinearRun(unittest.TestCase):
             " modes_contact: 3}\n"
         )
         recording = types.SimpleNamespace(models=[types.SimpleNamespace(configuration=text)])
-        self.assertAlmostEqual(model.bandwidth(recording), 2.0 * 0.004 * 40.0, places=12)
+        self.assertAlmostEqual(self.bandwidth(recording), 2.0 * 0.004 * 40.0, places=12)
+
+    def test_the_resolution_without_a_model_is_that_for_a_usual_damping(self):
+        for text, frequencies, wanted in (
+            ("beam1: {", [0.0, 25.0, 12.0], 2.0 * 0.01 * 12.0),
+            ("", [], 1.0),
+        ):
+            info = types.SimpleNamespace(configuration=text, free_frequencies=np.array(frequencies))
+            recording = types.SimpleNamespace(models=[info])
+            found, reason = model.of_recording(recording)
+            self.assertIsNone(found)
+            self.assertIn("the recorded configuration cannot be used: ", reason)
+            self.assertNotIn("\n", reason)
+            self.assertAlmostEqual(model.bandwidth(recording, found), wanted)
+        recording = types.SimpleNamespace(models=[])
+        self.assertEqual(model.of_recording(recording), (None, "the recording holds no model_info"))
+        self.assertEqual(model.bandwidth(recording, None), 1.0)
 
     def test_no_closed_form_where_the_contact_opens_and_closes(self):
         recording = types.SimpleNamespace(models=[None])

@@ -16,11 +16,18 @@ from vibro_impact.report.page import Page, figure, plotly_version, table
 # A page of this many characters opens at once; what the rest leaves of it is for the data of the steps.
 LARGEST_PAGE = 13.0e6
 LOSSES_SHOWN = 20
+# Independent averages of a frequency-response function below which the page warns.
+LEAST_AVERAGES = 8
 STATE_WORDS = {"free": "the contact never reached", "contact": "the contact never left"}
 
 
 class Refused(Exception):
     """Something the user asked for is not in the recording; the message is one line."""
+
+
+def names(bags):
+    """Of bags, without their folders, for people."""
+    return " ".join(os.fsencode(os.path.basename(bag)).decode("utf-8", "replace") for bag in bags)
 
 
 def utc(stamp):
@@ -66,7 +73,7 @@ def counts(run):
     recording = run.recording
     impacts = recording.impacts
     return [
-        ("bags", " ".join(os.path.basename(bag) for bag in run.bags)),
+        ("bags", names(run.bags)),
         ("first sample", "%s (number %d)" % (utc(recording.start_stamp), recording.first)),
         (
             "length",
@@ -321,30 +328,48 @@ def steps(page, run, options):
 
 
 def waterfalls(page, run):
+    recording = run.recording
     page.section("waterfall", "Waterfall")
-    made = [
-        spectral_charts.waterfall(
-            run.recording.gap, run.recording.sample_period, run.segments if stepped(run) else [], "gap", "gap", "m"
-        ),
-    ]
+    quantities = [(recording.gap, "gap", "gap", "m")]
     if touched(run):
-        made.append(
-            spectral_charts.waterfall(
-                run.recording.contact_force,
-                run.recording.sample_period,
-                run.segments if stepped(run) else [],
-                "force",
-                "contact force",
-                "N",
-            )
-        )
-    shown = [chart for chart in made if chart]
-    for chart in shown:
-        page.chart(chart)
-    if not shown:
-        page.put("<p class='left-out'>Left out: the gap never moves.</p>")
-    elif not touched(run):
+        quantities.append((recording.contact_force, "force", "contact force", "N"))
+    segments = run.segments if stepped(run) else []
+    for values, key, words, unit in quantities:
+        chart, reason = spectral_charts.waterfall(values, recording.sample_period, segments, key, words, unit)
+        if chart:
+            page.chart(chart)
+        else:
+            page.put("<p class='left-out'>Left out: %s.</p>" % reason)
+    if not touched(run):
         page.put("<p class='left-out'>That of the contact force is left out: the contact is never reached.</p>")
+
+
+def segment_of(run, resolution, model):
+    """Samples of a segment for the frequency-response functions."""
+    recording = run.recording
+    if resolution:
+        return 2 * max(32, int(round(0.5 / (resolution * recording.sample_period))))
+    return spectra.segment_length(len(recording.gap), recording.sample_period, models.bandwidth(recording, model))
+
+
+def why_no_estimate(recording, response, length):
+    """Why frequency_response() has nothing of a response, in segments of so many samples."""
+    segment = "a segment of %d samples (%.4g s)" % (length, length * recording.sample_period)
+    if length > len(response):
+        return "the recording, %d samples, is shorter than %s." % (len(response), segment)
+    if not len(spectra.whole_segments((recording.acceleration, response), length)):
+        return "there is a loss in every stretch as long as %s." % segment
+    return "only one stretch as long as %s is without a loss, and one segment alone has no coherence." % segment
+
+
+def few_averages(page, estimate):
+    """Says so where an estimate is of few averages."""
+    if estimate.averages < LEAST_AVERAGES:
+        page.put(
+            "<p class='left-out'>Few averages: %d segments are worth %.1f independent ones. Of fewer than %d the coherence"
+            " is too high by chance and the random error larger than stated; a coarser resolution (--resolution) or a longer"
+            " recording gives more.</p>" % (estimate.segments, estimate.averages, LEAST_AVERAGES)
+        )
 
 
 def frequency_responses(page, run, resolution):
@@ -353,15 +378,15 @@ def frequency_responses(page, run, resolution):
         page.left_out("frf", title, "the drive is not random (%s)." % drive_words(run))
         return
     recording = run.recording
-    if resolution:
-        length = 2 * max(32, int(round(0.5 / (resolution * recording.sample_period))))
-    else:
-        length = spectra.segment_length(len(recording.gap), recording.sample_period, models.bandwidth(recording))
-    gap = None
-    if length <= len(recording.gap):
-        gap = spectra.frequency_response(recording.acceleration, recording.gap, recording.sample_period, length)
+    model, no_model = models.of_recording(recording)
+    length = segment_of(run, resolution, model)
+
+    def estimate(response):
+        return spectra.frequency_response(recording.acceleration, response, recording.sample_period, length)
+
+    gap = estimate(recording.gap)
     if gap is None:
-        page.left_out("frf", title, "no stretch of %d samples, which one segment takes, is without a loss." % length)
+        page.left_out("frf", title, why_no_estimate(recording, recording.gap, length))
         return
     page.section("frf", title)
     page.put(
@@ -370,30 +395,35 @@ def frequency_responses(page, run, resolution):
         " receptance (dynamic compliance), as the base acts on every mode like the force \u2212\u0393<sub>n</sub>"
         " <i>a</i>.</p>"
     )
+    few_averages(page, gap)
     page.chart(spectral_charts.excitation_density(gap))
     state = models.linear_state(recording, touched(run), pressed(run))
-    closed_form = models.receptance(recording, state, gap.frequency) if state else None
+    closed_form = models.receptance(model, recording.sample_period, state, gap.frequency) if state and model else None
     page.chart(spectral_charts.frequency_response(gap, "gap", "gap", "m", closed_form, STATE_WORDS.get(state, "")))
-    if touched(run):
-        force = spectra.frequency_response(
-            recording.acceleration, recording.contact_force, recording.sample_period, length
-        )
-        page.chart(spectral_charts.frequency_response(force, "force", "contact force", "N"))
+    if not touched(run):
+        page.put("<p class='left-out'>That of the contact force is left out: the contact is never reached.</p>")
+    else:
+        force = estimate(recording.contact_force)
+        if force:
+            page.chart(spectral_charts.frequency_response(force, "force", "contact force", "N"))
+        else:
+            reason = why_no_estimate(recording, recording.contact_force, length)
+            page.put("<p class='left-out'>That of the contact force is left out: %s</p>" % html.escape(reason))
         if not state:
             page.put(
                 "<p>No closed form is drawn along: a contact that opens and closes is not linear, which the coherence"
                 " shows.</p>"
             )
-    else:
-        page.put("<p class='left-out'>That of the contact force is left out: the contact is never reached.</p>")
+    if not model:
+        words = "" if resolution else " The resolution is that for a damping ratio of %g." % models.USUAL_DAMPING
+        page.put("<p class='left-out'>No closed form is drawn along: %s.%s</p>" % (html.escape(no_model), words))
 
 
 def make(read, options, stage):
     """The page as text."""
     run = read[0]
     recording = run.recording
-    names = " ".join(os.path.basename(bag) for bag in run.bags)
-    page = Page("Vibro-impact run: " + names)
+    page = Page("Vibro-impact run: " + names(run.bags))
     page.lead(
         "Made from the recording alone. Charts can be zoomed with the mouse or, in focus, with the keys plus, minus,"
         " arrows and 0."

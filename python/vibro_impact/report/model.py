@@ -6,16 +6,32 @@ import vibro_impact
 
 # Damping ratio, at least, by which the resolution of spectra is chosen.
 LEAST_DAMPING = 0.002
+# Damping ratio by which it is chosen where no configuration says one.
+USUAL_DAMPING = 0.01
 # Images of the spectrum of a sampled drive that are summed on either side; those beyond weigh less than 1e-6.
 IMAGES = 4
 
 
-def bandwidth(recording):
+def of_recording(recording):
+    """(model of the recording's first configuration, ""), or (None, why there is none)."""
+    if not recording.models:
+        return None, "the recording holds no model_info"
+    try:
+        return vibro_impact.Model(recording.models[0].configuration), ""
+    except vibro_impact.Error as error:
+        return None, "the recorded configuration cannot be used: " + " ".join(str(error).split())
+
+
+def bandwidth(recording, model):
     """Least half-power bandwidth 2 zeta f of the resonances while apart, Hz: a modal table may damp each mode in its own
-    way."""
-    model = vibro_impact.Model(recording.models[0].configuration)
-    frequency, damping = model.free_frequencies, np.maximum(model.free_damping_ratios, LEAST_DAMPING)
-    return float(np.min((2.0 * damping * frequency)[frequency > 0.0]))
+    way. `model` may be None: of the recorded natural frequencies, at USUAL_DAMPING."""
+    if model:
+        frequency, damping = model.free_frequencies, np.maximum(model.free_damping_ratios, LEAST_DAMPING)
+    else:
+        frequency = recording.models[0].free_frequencies if recording.models else np.empty(0)
+        damping = USUAL_DAMPING
+    bandwidths = (2.0 * damping * frequency)[frequency > 0.0]
+    return float(np.min(bandwidths)) if len(bandwidths) else 1.0
 
 
 def linear_state(recording, touched, pressed):
@@ -26,7 +42,7 @@ def linear_state(recording, touched, pressed):
     return "contact" if pressed else "free"
 
 
-def receptance(recording, state, frequency):
+def receptance(model, sample_period, state, frequency):
     """Gap per base acceleration in a linear state (complex, s^2) at `frequency` in Hz, for a drive that is linear
     between its samples, as the simulator takes it.
 
@@ -34,11 +50,9 @@ def receptance(recording, state, frequency):
     of doc/model.md, section 3. Joined by straight lines, samples at a frequency f are a drive that has sinc^2(f T) of
     their amplitude there, and an image at every f + k/T, of which the samples of the response show the answer at f
     again."""
-    model = vibro_impact.Model(recording.models[0].configuration)
-    period = recording.sample_period
     total = np.zeros(len(frequency), dtype=complex)
     for k in range(-IMAGES, IMAGES + 1):
-        image = frequency + k / period
+        image = frequency + k / sample_period
         answer = np.asarray(model.gap_response(np.abs(image), state))
-        total += np.where(image < 0.0, np.conj(answer), answer) * np.sinc(image * period) ** 2
+        total += np.where(image < 0.0, np.conj(answer), answer) * np.sinc(image * sample_period) ** 2
     return total

@@ -55,10 +55,11 @@ def whole_segments(signals, length):
 def frequency_response(excitation, response, sample_period, length):
     """Estimates H1 = G_xy/G_xx, H2 = G_yy/G_yx and the coherence |G_xy|^2/(G_xx G_yy) (Bendat and Piersol, Random Data,
     4th ed., ch. 6) from segments of `length` samples (even) with a Hann window, half overlapping, each without its
-    mean. Segments with a lost sample (NaN) are left out. None where no segment is whole."""
+    mean. Segments with a lost sample (NaN) are left out. None where fewer than two are whole: the coherence of one alone
+    is 1, whatever it holds."""
     window = hann(length)
-    starts = whole_segments((excitation, response), length)
-    if len(starts) == 0:
+    starts = whole_segments((excitation, response), length) if length <= len(response) else ()
+    if len(starts) < 2:
         return None
     lines = length // 2 + 1
     auto_x = np.zeros(lines)

@@ -12,24 +12,28 @@ ROWS = 320
 HARMONICS = 10.0
 DYNAMIC_RANGE = 100.0  # dB below the greatest level
 MOST_LINES = 20000
+SHORTEST = 64  # samples of a segment of a waterfall
 
 
 def waterfall(values, sample_period, steps, quantity, words, unit):
-    """A spectrogram of `values` over the whole recording; `steps`: segments of the drive that have a frequency."""
+    """(a spectrogram of `values` over the whole recording, ""), or (None, why there is none); `steps`: segments of the
+    drive that have a frequency."""
     length = 4096
-    while length > 64 and 8 * length > len(values):
+    while length > SHORTEST and 8 * length > len(values):
         length //= 2
+    if len(values) < length:
+        return None, "the recording has %d samples, a segment of a spectrum takes %d" % (len(values), length)
+    if not np.isfinite(values).any():
+        return None, "every sample of the %s is lost" % words
     # What does not move has no spectrum but that of rounding.
     if np.fmax.reduce(values) == np.fmin.reduce(values):
-        return None
+        return None, "the %s never moves" % words
     times, frequency, amplitude = spectra.spectrogram(values, sample_period, COLUMNS, length)
-    if not np.isfinite(amplitude).any():
-        return None
+    if not np.nanmax(amplitude[1:], initial=0.0) > 0.0:
+        return None, "there is no stretch of %d samples in which the %s is without a loss and moves" % (length, words)
     with np.errstate(divide="ignore"):
         level = 20.0 * np.log10(amplitude)
     highest = float(np.nanmax(level[1:]))
-    if not np.isfinite(highest):
-        return None
     level = np.where(np.isfinite(amplitude), np.maximum(level, highest - DYNAMIC_RANGE), np.nan)
     # Up to the frequency above which nothing is within the range that is shown.
     heard = np.flatnonzero(np.nanmax(level, axis=1) > highest - 0.7 * DYNAMIC_RANGE)
@@ -94,7 +98,7 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
     chart.axes("time since the first sample (s)", "frequency (Hz)")
     chart.layout["yaxis"]["range"] = [0.0, float(frequency[-1])]
     chart.logarithmic = "yaxis"
-    return chart
+    return chart, ""
 
 
 def band(estimate):
