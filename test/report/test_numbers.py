@@ -16,6 +16,7 @@ import recorded  # noqa: E402
 
 import vibro_impact  # noqa: E402
 from vibro_impact.report import (
+    chart,
     impact_charts,
     model,
     packing,
@@ -383,6 +384,23 @@ class StepData(unittest.TestCase):
         self.assertEqual(data["begin"] + data["samples"], 15000 - 25)
         np.testing.assert_array_equal(end[0], gap[data["begin"] : 14975].astype("f4"))
 
+    def test_says_why_there_is_no_spectrum(self):
+        random = np.random.RandomState(2)
+        gap, force = random.standard_normal(8000), random.standard_normal(8000)
+        force[4000:] = 0.0  # which is not in contact, after a contact in the half before
+        gap[3000] = np.nan
+        recording = recording_of(random.standard_normal(8000), gap, force)
+        part = segments.Segment(0, 8000, None, None, None, 0, 0)
+        data = step_data.of_segment(recording, part, (100, 500, 64), 500.0)
+        self.assertIn("gap_spectrum", data)
+        self.assertEqual(data["no_force_spectrum"], "nothing moves")
+        self.assertNotIn("force_spectrum", data)
+        gap[5000] = np.nan
+        data = step_data.of_segment(recording, part, (100, 500, 64), 500.0)
+        self.assertEqual(data["no_gap_spectrum"], "samples are lost")
+        part = segments.Segment(0, 20, None, None, None, 0, 0)
+        self.assertEqual(step_data.spectrum(gap, part, PERIOD, 64, 500.0), "too few samples")
+
     def test_takes_a_length_that_is_transformed_fast(self):
         self.assertEqual([step_data.largest_factor(n) for n in (1, 2, 97, 1024, 2 * 3 * 49)], [1, 2, 97, 2, 7])
         length = step_data.quick_length(100, 115.12)
@@ -412,6 +430,15 @@ class Charts(unittest.TestCase):
             self.assertEqual(counts.sum(), len(values))
             self.assertLessEqual(len(counts), impact_charts.MOST_BINS)
             self.assertTrue((np.diff(edges) > 0.0).all())
+
+    def test_a_band_is_closed_by_itself_before_and_behind_a_hole(self):
+        x = np.arange(7.0)
+        low = np.array([np.nan, 1.0, 2.0, np.nan, 4.0, np.nan, np.nan])
+        across, up = chart.outline(x, low, low + 0.5)
+        np.testing.assert_array_equal(across, [1.0, 2.0, 2.0, 1.0, 1.0, np.nan, 4.0, 4.0, 4.0, np.nan])
+        np.testing.assert_array_equal(up, [1.0, 2.0, 2.5, 1.5, 1.0, np.nan, 4.0, 4.5, 4.0, np.nan])
+        for known in (np.full(3, np.nan), np.empty(0)):
+            self.assertEqual(len(chart.outline(known, known, known)[0]), 0)
 
     def test_points_that_cover_each_other_are_drawn_once(self):
         x = np.array([1.0, 1.0, 1.0, 2.0])

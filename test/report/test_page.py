@@ -44,11 +44,20 @@ class Page(unittest.TestCase):
         recorded.write_bag(path("down.bag"), recorded.configuration(), back)
         recorded.write_bag(path("linear.bag"), recorded.configuration(clearance=1e-2), recorded.random_drive(4.0))
         recorded.write_bag(path("random.bag"), recorded.configuration(clearance=2e-6), recorded.random_drive(4.0))
+        # Forty parts of 15 000 samples: of the eleventh a piece of the gap is lost, of two others all of it.
+        recorded.write_bag(
+            path("lossy.bag"),
+            recorded.configuration(clearance=1e-2),
+            recorded.random_drive(12.0),
+            lost_blocks=[302, 303, *range(600, 660)],
+        )
         cls.stepped, cls.linear, cls.random = path("stepped.html"), path("linear.html"), path("random.html")
+        cls.lossy = path("lossy.html")
         for arguments in (
             [cls.bag, "--with", path("down.bag"), "--out", cls.stepped],
             [path("linear.bag"), "--out", cls.linear],
             [path("random.bag"), "--out", cls.random],
+            [path("lossy.bag"), "--out", cls.lossy],
         ):
             subprocess.run([SCRIPT, *arguments], check=True, stderr=subprocess.DEVNULL)
         cls.browser = Browser()
@@ -116,6 +125,64 @@ class Page(unittest.TestCase):
         self.open(self.random)
         self.assert_all_drawn("excitation_density", "frf_gap", "frf_force", "histogram_impulse", "waterfall_force")
         self.assertNotIn("closed form", self.value(self.plot("frf_gap") + ".data.map((trace) => trace.name)"))
+
+    def fill_at(self, key, time):
+        """Pixels of the upright line at this time that the band of the gap fills, and the time of its first point."""
+        return self.value(
+            """(() => {
+              const plot = %s, layout = plot._fullLayout, path = plot.querySelector(".xy2 .scatterlayer path.js-fill");
+              const point = path.ownerSVGElement.createSVGPoint();
+              point.x = layout.xaxis.d2p(given[0]);
+              let filled = 0;
+              for (point.y = 0; point.y < layout.yaxis2._length; ++point.y) filled += path.isPointInFill(point);
+              return filled;
+            })()"""
+            % self.plot(key),
+            time,
+        )
+
+    def test_no_band_is_filled_where_samples_are_lost(self):
+        self.open(self.lossy)
+        self.value("await window.vibroImpactReport.draw('overview')")
+        for time in (5.9, 6.7):
+            self.assertGreater(self.fill_at("overview", time), 10, time)
+        for time in (6.05, 6.3, 6.55):
+            self.assertEqual(self.fill_at("overview", time), 0, time)
+        self.value("await window.vibroImpactReport.choose(10)")
+        self.value(
+            "[...document.querySelectorAll(\"figure[data-chart='step_time'] button\")].find((b) => b.textContent"
+            " === 'Whole part').click()"
+        )
+        self.value("await window.vibroImpactReport.draw('step_time')")
+        for times in ((3.002, 3.007, 3.012, 3.017), (3.042, 3.047, 3.052, 3.057)):
+            self.assertGreater(sum(self.fill_at("step_time", time) for time in times), 4, times)
+        for time in (3.022, 3.03, 3.038):
+            self.assertEqual(self.fill_at("step_time", time), 0, time)
+        self.assert_no_complaint()
+
+    def test_a_part_without_a_spectrum_says_so_and_saves_none(self):
+        self.open(self.lossy)
+        remarks = "%s._fullLayout.annotations.map((a) => a.text).join()"
+        disabled = (
+            "[...document.querySelectorAll(\"figure[data-chart='%s'] button\")].filter((b) => b.disabled).length"
+        )
+        for part, gap_lost in ((10, False), (20, True), (12, False), (21, True)):
+            self.value("await window.vibroImpactReport.choose(%d)" % part)
+            self.value("await window.vibroImpactReport.draw('step_spectrum')")
+            self.value("await window.vibroImpactReport.draw('step_portrait')")
+            words = self.value(remarks % self.plot("step_spectrum"))
+            self.assertIn("spectrum of the contact force left out: nothing moves", words)
+            self.assertEqual("spectrum of the gap left out: samples are lost" in words, gap_lost)
+            words = self.value(remarks % self.plot("step_portrait"))
+            self.assertEqual("samples are lost" in words, gap_lost)
+            for key in ("step_spectrum", "step_portrait"):
+                self.assertEqual(self.value(disabled % key), 2 if gap_lost else 0, (part, key))
+                text = self.value("await window.vibroImpactReport.csv(given[0])", key)
+                self.assertEqual(len(text) == 0, gap_lost, (part, key))
+            if not gap_lost:  # what there is takes the whole height
+                domain = self.value(self.plot("step_spectrum") + "._fullLayout.yaxis2.domain")
+                self.assertEqual(domain, [0, 1])
+        self.assert_no_complaint()
 
     def test_charts_are_drawn_when_they_come_into_view(self):
         self.open(self.stepped)

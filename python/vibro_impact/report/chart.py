@@ -1,5 +1,7 @@
 """What a chart of the page is made of, in the words of plotly.js: traces, axes, the table behind it."""
 
+import numpy as np
+
 from vibro_impact.report.packing import packed
 
 # Okabe and Ito's colours: told apart by the colour-blind; markers and dashes differ as well, for paper.
@@ -62,6 +64,20 @@ class Chart:
         )
 
 
+def outline(x, low, high):
+    """(x, y) of the outlines of a band between two lines, one closed by itself for each run of points at which both are
+    known: along the low line and back along the high one, with NaN behind it. For fill="toself"; that of plotly.js from
+    one line to another, "tonexty", goes straight across where both are unknown."""
+    known = np.isfinite(low) & np.isfinite(high)
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], known, [False])).astype(int)))
+    pieces_x, pieces_y = [np.empty(0)], [np.empty(0)]
+    for begin, end in zip(edges[::2], edges[1::2]):
+        along = slice(begin, end)
+        pieces_x += [x[along], x[along][::-1], x[begin : begin + 1], [np.nan]]
+        pieces_y += [low[along], high[along][::-1], low[begin : begin + 1], [np.nan]]
+    return np.concatenate(pieces_x), np.concatenate(pieces_y)
+
+
 def ref(name, factor=1.0):
     """The array of this name, times a factor, in a trace."""
     return {"array": name, "factor": factor}
@@ -82,6 +98,11 @@ def points(x, y, name, colour, symbol, size=5.0, hover="%{x:.5g}, %{y:.4g}", **m
         },
         **more,
     )
+
+
+def band(x, y, name, colour, fill, width=0.7, **more):
+    """A trace of an outline()."""
+    return line(x, y, name, colour, "solid", width, fill="toself", fillcolor=fill, hoveron="points", **more)
 
 
 def line(x, y, name, colour, dash="solid", width=1.5, hover="%{x:.5g}, %{y:.4g}", **more):

@@ -95,21 +95,21 @@ def over_time(recording):
         )
         chart.column("least_%s_%s" % (name, header), name + "_low", low, "f4")
         chart.column("greatest_%s_%s" % (name, header), name + "_high", high, "f4")
-        for part, fill in (("_low", "none"), ("_high", "tonexty")):
-            chart.traces.append(
-                charts.line(
-                    charts.ref("time"),
-                    charts.ref(name + part, factor),
-                    words,
-                    colour,
-                    width=0.7,
-                    hover=words + " %{y:.4g} " + scale + unit,
-                    yaxis=axis,
-                    fill=fill,
-                    fillcolor=colour,
-                    showlegend=False,
-                )
+        outline = charts.outline(starts * recording.sample_period, low, high)
+        chart.put(name + "_outline_time", outline[0])
+        chart.put(name + "_outline", outline[1], "f4")
+        chart.traces.append(
+            charts.band(
+                charts.ref(name + "_outline_time"),
+                charts.ref(name + "_outline", factor),
+                words,
+                colour,
+                colour,
+                hover="%{x:.5g} s: " + words + " %{y:.4g} " + scale + unit,
+                yaxis=axis,
+                showlegend=False,
             )
+        )
         chart.layout["yaxis" + axis[1:]] = {
             "title": {"text": "%s<br>(%s)" % (words.replace("base ", "base<br>"), scale + unit)},
             "domain": domains[axis],

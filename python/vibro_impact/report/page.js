@@ -88,6 +88,7 @@
         if (Number.isInteger(number)) choose(number, true);
       });
     }
+    for (const button of chart.savers) button.disabled = content.traces.length === 0;
     chart.figure.dataset.drawn = chart.revision;
   }
 
@@ -134,6 +135,20 @@
     return { type: "scatter", mode: "lines", x, y, name, line: { color, width: 1.4 }, ...extra };
   }
 
+  // Of a band between two lines, closed by itself for each run of points at which both are known.
+  function outline(x, low, high) {
+    const line = [[], []];
+    for (let begin = 0; begin < x.length; ++begin) {
+      if (low[begin] === null || high[begin] === null) continue;
+      let end = begin;
+      while (end < x.length && low[end] !== null && high[end] !== null) ++end;
+      line[0].push(...x.slice(begin, end), ...x.slice(begin, end).reverse(), x[begin], null);
+      line[1].push(...low.slice(begin, end), ...high.slice(begin, end).reverse(), low[begin], null);
+      begin = end;
+    }
+    return line;
+  }
+
   async function stepTime() {
     const { wide, fine } = await stepArrays(step);
     const units = report.units;
@@ -142,9 +157,8 @@
       ["gap", units.gap, "#0072B2", "y2", "gap"],
       ["force", units.force, "#D55E00", "y", "contact force"],
     ]) {
-      const band = { yaxis: axis, hoverinfo: "skip", line: { width: 0 }, showlegend: false };
-      traces.push(stepLine(wide.time, scaled(wide[name + "_low"], unit.factor), label, color, band));
-      traces.push(stepLine(wide.time, scaled(wide[name + "_high"], unit.factor), label + ": least to greatest value", color, { ...band, fill: "tonexty", fillcolor: name === "gap" ? "rgba(86,180,233,0.45)" : "rgba(230,159,0,0.45)", showlegend: true }));
+      const [x, y] = outline(wide.time, scaled(wide[name + "_low"], unit.factor), scaled(wide[name + "_high"], unit.factor));
+      traces.push(stepLine(x, y, label + ": least to greatest value", color, { yaxis: axis, hoverinfo: "skip", line: { width: 0 }, fill: "toself", fillcolor: name === "gap" ? "rgba(86,180,233,0.45)" : "rgba(230,159,0,0.45)" }));
       traces.push(stepLine(fine.time, scaled(fine[name], unit.factor), label + ": every sample", color, { yaxis: axis, hovertemplate: "%{x:.6f} s: %{y:.4g} " + unit.text + "<extra></extra>" }));
     }
     const [from, to] = [fine.time[0], fine.time[fine.time.length - 1]];
@@ -177,6 +191,7 @@
       gap.push(fine.gap[i]);
       velocity.push((fine.gap[i + 1] - fine.gap[i - 1]) / (2 * report.sample_period));
     }
+    if (!velocity.some(Number.isFinite)) return nothing("phase portrait left out: samples are lost");
     const [slowest, fastest] = limits(velocity);
     const speed = unitFor(Math.max(-slowest, fastest), "m/s");
     const [least, greatest] = limits(gap).map((value) => value * units.gap.factor);
@@ -210,12 +225,16 @@
     const units = report.units;
     const traces = [];
     const table = [];
+    const missing = [];
     for (const [name, unit, color, dash, axis, label] of [
       ["gap", units.gap, "#0072B2", "solid", "y2", "gap"],
       ["force", units.force, "#D55E00", "solid", "y", "contact force"],
     ]) {
       const packed = data[name + "_spectrum"];
-      if (!packed) continue;
+      if (!packed) {
+        missing.push("spectrum of the " + label + " left out: " + data["no_" + name + "_spectrum"]);
+        continue;
+      }
       const level = await unpack(packed);
       const amplitude = Array.from(level, (value) => 10 ** value);
       const frequency = amplitude.map((_, i) => packed.df * (1 + i * packed.run + (packed.run - 1) / 2));
@@ -223,15 +242,27 @@
       if (table.length === 0) table.push(["frequency_Hz", frequency]);
       table.push([name === "gap" ? "gap_amplitude_m" : "force_amplitude_N", amplitude]);
     }
-    const both = Boolean(data.force_spectrum);
+    if (traces.length === 0) return nothing(missing.join("<br>"));
+    const both = traces.length === 2;
     const frequency = report.segments[step].frequency;
     const layout = {
-      xaxis: { title: { text: "frequency (Hz)" }, anchor: both ? "y" : "y2" },
-      yaxis2: { title: { text: "gap (" + units.gap.text + ")" }, type: "log", domain: both ? [0.53, 1] : [0, 1] },
+      xaxis: { title: { text: "frequency (Hz)" }, anchor: data.force_spectrum ? "y" : "y2" },
       shapes: frequency ? [{ type: "line", x0: frequency, x1: frequency, y0: 0, y1: 1, yref: "paper", line: { color: "#1a1a1a", width: 1, dash: "dot" } }] : [],
+      annotations: missing.map((text) => remark(text, 1, 1.01, "bottom")),
     };
-    if (both) layout.yaxis = { title: { text: "force (" + units.force.text + ")" }, type: "log", domain: [0, 0.47] };
+    if (data.gap_spectrum) layout.yaxis2 = { title: { text: "gap (" + units.gap.text + ")" }, type: "log", domain: both ? [0.53, 1] : [0, 1] };
+    if (data.force_spectrum) layout.yaxis = { title: { text: "force (" + units.force.text + ")" }, type: "log", domain: both ? [0, 0.47] : [0, 1] };
     return { traces, layout, table };
+  }
+
+  // Words in a chart, at a place in shares of its width and height.
+  function remark(text, x, y, yanchor) {
+    return { text, x, y, xref: "paper", yref: "paper", xanchor: x === 1 ? "right" : "center", yanchor, showarrow: false };
+  }
+
+  // A chart of which there is nothing but why.
+  function nothing(text) {
+    return { traces: [], layout: { xaxis: { visible: false }, yaxis: { visible: false }, annotations: [remark(text, 0.5, 0.5, "middle")] }, table: [] };
   }
 
   const stepContents = { step_time: stepTime, step_portrait: stepPortrait, step_spectrum: stepSpectrum };
@@ -295,6 +326,7 @@
       for (let i = 0; i < rows.length; ++i) lines.push([number(rows[i], rows), ...written(values.subarray(i * columns.length, (i + 1) * columns.length))].join(","));
     } else {
       const { table } = await chart.content();
+      if (table.length === 0) return "";
       lines.push(table.map(([header]) => header).join(","));
       for (let i = 0; i < table[0][1].length; ++i) lines.push(table.map(([, values]) => number(values[i], values)).join(","));
     }
@@ -339,8 +371,15 @@
     charts.set(key, chart);
     const tools = figure.querySelector(".tools");
     const name = figure.querySelector("h3").textContent;
-    button("Save as SVG", async () => save(new Blob([await svg(chart)], { type: "image/svg+xml" }), fileName(chart, ".svg")), tools).setAttribute("aria-label", "Save as SVG: " + name);
-    button("Save data as CSV", async () => save(new Blob([await csv(chart)], { type: "text/csv" }), fileName(chart, ".csv")), tools).setAttribute("aria-label", "Save data as CSV: " + name);
+    const saver = (words, make, type, ending) => {
+      const made = button(words, async () => {
+        await ensureDrawn(chart);
+        if (!made.disabled) save(new Blob([await make(chart)], { type }), fileName(chart, ending));
+      }, tools);
+      made.setAttribute("aria-label", words + ": " + name);
+      return made;
+    };
+    chart.savers = [saver("Save as SVG", svg, "image/svg+xml", ".svg"), saver("Save data as CSV", csv, "text/csv", ".csv")];
     if (specification && specification.logarithmic) {
       const axis = specification.logarithmic;
       let logarithmic = specification.layout[axis].type === "log";

@@ -191,23 +191,22 @@ def frequency_response(estimate, quantity, words, unit, closed_form=None, closed
     if closed is not None:
         estimates.append(("closed_form", closed, "closed form", charts.BLACK, "dot", 1.8))
     spread = 1.96 * error * np.abs(h1)
-    chart.put("low", np.maximum(np.abs(h1) - spread, 1e-3 * np.abs(h1)), "f4")
-    chart.put("high", np.abs(h1) + np.minimum(spread, 1e3 * np.abs(h1)), "f4")
-    for name, fill in (("low", "none"), ("high", "tonexty")):
-        chart.traces.append(
-            charts.line(
-                charts.ref("frequency"),
-                charts.ref(name),
-                "H<sub>1</sub> \u00b1 1.96 random errors",
-                charts.SKY,
-                width=0,
-                yaxis="y3",
-                fill=fill,
-                fillcolor="rgba(86,180,233,0.35)",
-                showlegend=fill != "none",
-                hoverinfo="skip",
-            )
+    low = np.maximum(np.abs(h1) - spread, 1e-3 * np.abs(h1))
+    outline = charts.outline(frequency, low, np.abs(h1) + np.minimum(spread, 1e3 * np.abs(h1)))
+    chart.put("band_frequency", outline[0])
+    chart.put("band", outline[1], "f4")
+    chart.traces.append(
+        charts.band(
+            charts.ref("band_frequency"),
+            charts.ref("band"),
+            "H<sub>1</sub> \u00b1 1.96 random errors",
+            charts.SKY,
+            "rgba(86,180,233,0.35)",
+            0,
+            yaxis="y3",
+            hoverinfo="skip",
         )
+    )
     for name, values, label, colour, dash, width in estimates:
         chart.column("%s_magnitude_%s_per_m_per_s2" % (name, unit), name + "_magnitude", np.abs(values), "f4")
         chart.column(name + "_phase_deg", name + "_phase", np.degrees(np.angle(values)), "f4")

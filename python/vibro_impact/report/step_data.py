@@ -47,7 +47,7 @@ def quick_length(cycles, per_cycle):
 
 def spectrum(values, segment, sample_period, lines, top):
     """(spacing in Hz, log10 of the amplitudes, lines merged) of the second half of a segment, whole drive cycles of it
-    where there is a drive; up to `top` Hz. None where a sample is lost."""
+    where there is a drive; up to `top` Hz. A text that says why where there is none."""
     half = values[segment.first + (segment.last - segment.first) // 2 : segment.last][-LONGEST:]
     if segment.frequency:
         per_cycle = 1.0 / (segment.frequency * sample_period)
@@ -55,12 +55,16 @@ def spectrum(values, segment, sample_period, lines, top):
         if cycles >= 1:
             end = len(half) - int(per_cycle / 2.0)
             half = half[end - quick_length(cycles, per_cycle) : end]
-    if len(half) < 16 or not np.isfinite(half).all():
-        return None
+    if len(half) < 16:
+        return "too few samples"
+    if not np.isfinite(half).all():
+        return "samples are lost"
+    if half.min() == half.max():
+        return "nothing moves"
     frequency, amplitude = spectra.amplitude_spectrum(half, sample_period)
     shown = max(2, int(np.searchsorted(frequency, top, side="right")))
     merged, run = spectra.largest_of_each(amplitude[1:shown], lines)
-    floor = max(float(merged.max()) * 1e-9, 1e-300)
+    floor = float(merged.max()) * 1e-9
     return float(frequency[1]), np.log10(np.maximum(merged, floor)), run
 
 
@@ -87,7 +91,9 @@ def of_segment(recording, segment, size, top):
     reach = min(HARMONICS * segment.frequency, 0.5 / period) if segment.frequency else top
     for name, values in (("gap_spectrum", recording.gap), ("force_spectrum", recording.contact_force)):
         found = spectrum(values, segment, period, lines, reach)
-        if found and (name != "force_spectrum" or np.any(force)):
+        if isinstance(found, str):
+            data["no_" + name] = found
+        else:
             data[name] = dict(quantised(found[1]), df=found[0], run=found[2])
     return data
 
