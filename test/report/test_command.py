@@ -109,6 +109,8 @@ class Command(unittest.TestCase):
         self.assertNotIn("frf_gap", data["charts"])
         self.assert_says(text, "Left out: the drive is not random (3 steps of constant frequency, 325.7 to 542.9 Hz).")
         self.assertEqual([len(data["segments"]), len(data["step_data"])], [3, 3])
+        self.assertRegex(text, r"levels down to 100 dB below the greatest one, in steps of 0\.3\d* dB\.")
+        self.assert_says(text, "to the seven digits of single precision")
         # The step with the greatest impulse comes first: that at the resonance.
         self.assertIn("\u03c9* 1.6000", data["segments"][data["chosen"]]["label"])
         self.assertIn(", up, ", data["segments"][0]["label"])

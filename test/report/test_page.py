@@ -115,6 +115,16 @@ class Page(unittest.TestCase):
         self.assertEqual([name for name, _, _ in markers], ["drive upwards, first run", "drive downwards, second run"])
         self.assertEqual([len({marker[i] for marker in markers}) for i in (1, 2)], [2, 2])
 
+    def test_the_drive_is_seen_on_every_colour_of_a_waterfall(self):
+        self.open(self.stepped)
+        self.value("await window.vibroImpactReport.draw('waterfall_gap')")
+        lines = self.value(
+            self.plot("waterfall_gap")
+            + ".data.filter((t) => t.name === 'drive').map((t) => [t.line.color, t.line.dash, t.line.width])"
+        )
+        self.assertEqual([line[:2] for line in lines], [["#ffffff", "solid"], ["#000000", "dash"]])
+        self.assertGreater(lines[0][2], lines[1][2])
+
     def test_everything_of_random_runs_is_drawn(self):
         self.open(self.linear)
         self.assert_all_drawn(

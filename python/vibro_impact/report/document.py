@@ -278,7 +278,7 @@ STEP_CHARTS = (
         (
             "Lines: every sample of the end of the %(step)s. Shaded: least and greatest value in each of many parts of"
             " the whole of it. Drag over a stretch to zoom, double-click for all; a negative gap is a compressed"
-            " spring. The CSV holds every sample of the end."
+            " spring. The CSV holds every sample of the end, to the seven digits of single precision."
         ),
         560,
     ),

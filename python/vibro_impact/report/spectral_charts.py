@@ -46,12 +46,13 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
     starts = np.arange(0, len(frequency), merged)
     level = np.fmax.reduceat(level, starts, axis=0)
     frequency = np.add.reduceat(frequency, starts) / np.diff(np.append(starts, len(frequency)))
+    stored = quantised(level, "u1")
     chart = charts.Chart(
         "waterfall_" + quantity,
         "Waterfall of the " + words,
         "Amplitude of the %s over time and frequency, in dB re 1 %s: root mean square of the amplitude spectra of %d"
         " samples (%.4g ms, Hann window, %.4g Hz apart%s) in each column of %.4g s; levels down to %d dB below the"
-        " greatest one.%s"
+        " greatest one, in steps of %.2g dB.%s"
         % (
             words,
             unit,
@@ -61,13 +62,14 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
             "" if merged == 1 else "; each row is the greatest of %d lines" % merged,
             times[1] - times[0] if len(times) > 1 else len(values) * sample_period,
             DYNAMIC_RANGE,
+            stored["s"],
             " Dashed: frequency of the drive." if steps else "",
         ),
         440,
     )
     chart.put("time", times)
     chart.put("frequency", frequency)
-    chart.put("level", quantised(level, "u1"))
+    chart.put("level", stored)
     chart.traces.append(
         {
             "type": "heatmap",
@@ -82,18 +84,20 @@ def waterfall(values, sample_period, steps, quantity, words, unit):
     if steps:
         chart.put("drive_time", np.array([time for s in steps for time in (s.first, s.last)]) * sample_period)
         chart.put("drive_frequency", np.repeat([s.frequency for s in steps], 2))
-        chart.traces.append(
-            charts.line(
-                charts.ref("drive_time"),
-                charts.ref("drive_frequency"),
-                "drive",
-                "#ffffff",
-                "dash",
-                1.2,
-                "drive: %{y:.5g} Hz",
-                showlegend=False,
+        # Black on white is seen on every colour of the scale, the bright ridge of the drive included.
+        for colour, dash, width in (("#ffffff", "solid", 3.0), (charts.BLACK, "dash", 1.5)):
+            chart.traces.append(
+                charts.line(
+                    charts.ref("drive_time"),
+                    charts.ref("drive_frequency"),
+                    "drive",
+                    colour,
+                    dash,
+                    width,
+                    "drive: %{y:.5g} Hz",
+                    showlegend=False,
+                )
             )
-        )
     chart.extra["matrix"] = ["frequency_Hz", "frequency", "time", "level"]
     chart.axes("time since the first sample (s)", "frequency (Hz)")
     chart.layout["yaxis"]["range"] = [0.0, float(frequency[-1])]
