@@ -337,6 +337,25 @@ class Page(unittest.TestCase):
         )
         self.assert_no_complaint()
 
+    def test_the_chooser_hides_no_heading_and_stays_with_its_charts(self):
+        self.open(self.stepped)
+        self.value("await window.vibroImpactReport.drawAll()")
+        chooser = "document.querySelector('.chooser').getBoundingClientRect()"
+        for key in self.value("window.vibroImpactReport.charts()"):
+            heading = "document.querySelector(\"figure[data-chart='%s'] h3\")" % key
+            self.value(heading + ".parentElement.scrollIntoView()")
+            hidden = self.value(
+                "(() => { const box = %s.getBoundingClientRect(), over = document.elementFromPoint(box.left + 3,"
+                " box.top + box.height / 2); return over !== %s; })()" % (heading, heading)
+            )
+            self.assertFalse(hidden, key)
+            if key.startswith("step_"):
+                self.assertGreaterEqual(self.value(chooser + ".top"), 0.0, key)
+        for key in ("waterfall", "frf"):
+            self.value("document.getElementById(given[0]).scrollIntoView()", key)
+            top = self.value("document.getElementById(given[0]).getBoundingClientRect().top", key)
+            self.assertLessEqual(self.value(chooser + ".bottom"), top)
+
     def test_nothing_in_the_page_leads_to_a_server(self):
         self.open(self.stepped)
         self.value(

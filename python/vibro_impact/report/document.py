@@ -307,6 +307,7 @@ STEP_CHARTS = (
 
 
 def steps(page, run, options):
+    page.put("<section class='chosen'>")  # as far as the chooser stays in view
     page.section("step", "A chosen step" if stepped(run) else "A chosen part")
     chosen = chosen_step(run, options.step)
     page.put(
@@ -319,6 +320,7 @@ def steps(page, run, options):
 
     for key, title, caption, height in STEP_CHARTS:
         page.put(figure(key, title, caption % {"step": "step" if stepped(run) else "part"}, height))
+    page.put("</section>")
     held = step_data.embedded(run.segments, chosen)
     if len(held) < len(run.segments):
         page.put(

@@ -157,8 +157,9 @@
       ["gap", units.gap, "#0072B2", "y2", "gap"],
       ["force", units.force, "#D55E00", "y", "contact force"],
     ]) {
+      const shade = name === "gap" ? "rgba(86,180,233,0.45)" : "rgba(230,159,0,0.45)";
       const [x, y] = outline(wide.time, scaled(wide[name + "_low"], unit.factor), scaled(wide[name + "_high"], unit.factor));
-      traces.push(stepLine(x, y, label + ": least to greatest value", color, { yaxis: axis, hoverinfo: "skip", line: { width: 0 }, fill: "toself", fillcolor: name === "gap" ? "rgba(86,180,233,0.45)" : "rgba(230,159,0,0.45)" }));
+      traces.push(stepLine(x, y, label + ": least to greatest value", color, { yaxis: axis, hoverinfo: "skip", line: { color: shade, width: 1 }, fill: "toself", fillcolor: shade }));
       traces.push(stepLine(fine.time, scaled(fine[name], unit.factor), label + ": every sample", color, { yaxis: axis, hovertemplate: "%{x:.6f} s: %{y:.4g} " + unit.text + "<extra></extra>" }));
     }
     const [from, to] = [fine.time[0], fine.time[fine.time.length - 1]];
