@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """scripts/report, run as a user runs it."""
 
+import html
 import json
 import os
 import re
@@ -115,6 +116,14 @@ class Command(unittest.TestCase):
         self.assertIn("\u03c9* 1.6000", data["segments"][data["chosen"]]["label"])
         self.assertIn(", up, ", data["segments"][0]["label"])
         self.assert_says(text, "youngs_modulus")
+
+    def test_the_licence_of_plotly_is_in_the_page(self):
+        text, _ = self.page(self.quiet, "--no-replay")
+        assets = os.path.join(HERE, "..", "..", "python", "vibro_impact", "report", "assets")
+        with open(os.path.join(assets, "plotly.LICENSE"), encoding="utf-8") as file:
+            licence = file.read()
+        self.assertIn("The above copyright notice and this permission notice shall be included in", licence)
+        self.assert_says(text, html.escape(licence))
 
     def test_the_step_shown_first_can_be_chosen(self):
         self.assertEqual(self.page(self.stepped, "--step", "3")[1]["chosen"], 2)

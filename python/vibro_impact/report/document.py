@@ -11,7 +11,7 @@ from vibro_impact.report import impact_charts, response_charts, spectra, spectra
 from vibro_impact.report import model as models
 from vibro_impact.report import run as runs
 from vibro_impact.report.packing import prefix
-from vibro_impact.report.page import Page, figure, plotly_version, table
+from vibro_impact.report.page import Page, figure, plotly_licence, plotly_version, table
 
 # A page of this many characters opens at once; what the rest leaves of it is for the data of the steps.
 LARGEST_PAGE = 13.0e6
@@ -478,7 +478,7 @@ def make(read, options, stage):
         "Charts by plotly.js %s (MIT licence, &#169; Plotly, Inc.), which is inside this page. The page makes no"
         " request. Definitions: doc/report.md of the package vibro_impact."
         % plotly_version()
-    )
+    ) + plotly_licence()
     rest = LARGEST_PAGE - len(page.render(footer))
     size = step_data.sizes(len(held), rest)
     top = 0.5 / recording.sample_period

@@ -7,6 +7,7 @@ import re
 
 FOLDER = os.path.dirname(os.path.realpath(__file__))
 PLOTLY = os.path.join("assets", "plotly-cartesian.min.js")
+PLOTLY_LICENCE = os.path.join("assets", "plotly.LICENSE")
 
 
 def text_of(name):
@@ -21,6 +22,11 @@ def in_script(value):
 
 def plotly_version():
     return re.search(r"\(cartesian - minified\) v([0-9.]+)", text_of(PLOTLY)[:400]).group(1)
+
+
+def plotly_licence():
+    """The notice that every copy of plotly.js must have with it, as the page does."""
+    return "<details><summary>Licence of plotly.js</summary><pre>%s</pre></details>" % html.escape(text_of(PLOTLY_LICENCE))
 
 
 def table(rows, header=()):
