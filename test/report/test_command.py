@@ -135,6 +135,11 @@ class Command(unittest.TestCase):
         self.assertNotIn("impulse_response", data["charts"])
         self.assert_says(text, "no steps of constant frequency found")
         self.assert_says(text, "Identical: 200000 samples of gap and contact force and 0 impacts")
+        self.assert_says(
+            text,
+            "Computed with the simulator&#x27;s default limits: max_acceleration 100000 m/s\u00b2, max_bridged_gap 0.02 s,"
+            " max_step_back 0.1 s, max_stamp_jitter 0.05 s",
+        )
         self.assert_says(text, "Left out: there are no whole impacts in the recording.")
         self.assert_says(text, "the contact is never reached")
         found = re.search(r"at (\d+) lines, H<sub>1</sub> is within", text)

@@ -2,11 +2,13 @@
 
 import datetime
 import html
+import inspect
 import math
 import os
 
 import numpy as np
 
+import vibro_impact
 from vibro_impact.report import impact_charts, response_charts, spectra, spectral_charts, step_data
 from vibro_impact.report import model as models
 from vibro_impact.report import run as runs
@@ -85,6 +87,16 @@ def counts(run):
     ]
 
 
+def replay_limits():
+    """What the replay check takes the limits of the simulator for: it is not recorded what they were."""
+    defaults = {name: given.default for name, given in inspect.signature(vibro_impact.check_replay).parameters.items()}
+    return (
+        " Computed with the simulator's default limits: max_acceleration %g m/s\u00b2, max_bridged_gap %g s, max_step_back"
+        " %g s, max_stamp_jitter %g s; replay_check takes others."
+        % tuple(defaults[name] for name in ("max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter"))
+    )
+
+
 def replay_verdict(run):
     """(class of the verdict, text)."""
     report = run.replay
@@ -104,7 +116,8 @@ def replay_verdict(run):
                 found.recomputed,
                 report.samples,
                 report.impacts,
-            ),
+            )
+            + replay_limits(),
         )
     words = (
         "%d samples of gap and contact force and %d impacts, recomputed from the excitation and the model recorded with"
@@ -115,8 +128,8 @@ def replay_verdict(run):
         )
     )
     if report.losses or report.impacts_not_compared:
-        return "open", "Identical where compared: " + words
-    return "", "Identical: " + words
+        return "open", "Identical where compared: " + words + replay_limits()
+    return "", "Identical: " + words + replay_limits()
 
 
 def integrity(page, run):
