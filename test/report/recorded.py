@@ -76,9 +76,10 @@ def stamp_of(seconds):
     return START + rospy.Duration.from_sec(seconds)
 
 
-def write_bag(path, configuration_text, acceleration, lost_blocks=(), lost_forces=(), period=PERIOD):
+def write_bag(path, configuration_text, acceleration, lost_blocks=(), lost_forces=(), restarts=(), period=PERIOD):
     """What the simulator answers to `acceleration`, samples `period` s apart, and its impacts, in a bag. `lost_blocks`,
-    `lost_forces`: numbers of blocks of the gap and of the contact force that are not in it."""
+    `lost_forces`: numbers of blocks of the gap and of the contact force that are not in it; `restarts`: samples at which a start
+    from rest is told, without one."""
     model = vibro_impact.Model(configuration_text)
     simulation = model.simulation(period)
 
@@ -97,11 +98,10 @@ def write_bag(path, configuration_text, acceleration, lost_blocks=(), lost_force
             mapping_loss=model.mapping_loss,
         )
         bag.write("/model_info", info, START)
-        bag.write(
-            "/stream_start",
-            StreamStart(header=header(START), seq=0, sample_period=period, cause=StreamStart.FIRST),
-            START,
-        )
+        for seq, cause in [(0, StreamStart.FIRST), *((seq, StreamStart.RESET) for seq in restarts)]:
+            stamp = stamp_of(seq * period)
+            start = StreamStart(header=header(stamp), seq=seq, sample_period=period, cause=cause)
+            bag.write("/stream_start", start, stamp)
 
         def record(impacts, time):
             for impact in impacts:

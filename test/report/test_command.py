@@ -267,6 +267,28 @@ class Command(unittest.TestCase):
         self.assertEqual(len(data["segments"]), 2)
         self.assert_says(text, "<h3>Losses</h3>")
         self.assert_says(text, "<h3>Steps left out</h3>")
+        self.assertNotIn("more.</p>", text)
+
+    def test_long_lists_are_cut_and_say_so(self):
+        bag = os.path.join(self.folder_in(), "run.bag")
+        drive = recorded.stepped_sine(np.linspace(1.2, 3.0, 25), 10)
+        blocks = -(-len(drive) // recorded.BLOCK)
+        recorded.write_bag(
+            bag, recorded.configuration(), drive, lost_blocks=range(6, blocks, 2), restarts=range(1, 24)
+        )
+        text, _ = self.page(bag, "--no-replay")
+        recording = vibro_impact.read_bag(bag)
+        left_out = vibro_impact.extract_responses(bag, allow_gaps=True).left_out
+        for title, rows in (
+            ("Losses", recording.losses),
+            ("Steps left out", left_out),
+            ("Starts from rest", recording.starts),
+        ):
+            self.assertGreater(len(rows), 20, title)
+            part = text[text.index("<h3>%s</h3>" % title) :]
+            part = part[: part.index("more.</p>")]
+            self.assertEqual(part.count("<tr>"), 21, title)
+            self.assertTrue(part.endswith("</table>\n<p>And %d " % (len(rows) - 20)), title)
 
     def test_a_run_without_any_motion_gives_a_page(self):
         text, data = self.page(self.quiet)

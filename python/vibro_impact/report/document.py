@@ -17,7 +17,8 @@ from vibro_impact.report.page import Page, figure, plotly_licence, plotly_versio
 
 # A page of this many characters opens at once; what the rest leaves of it is for the data of the steps.
 LARGEST_PAGE = 13.0e6
-LOSSES_SHOWN = 20
+# Rows of a list.
+ROWS_SHOWN = 20
 # Independent averages of a frequency-response function below which the page warns.
 LEAST_AVERAGES = 8
 STATE_WORDS = {"free": "the contact never reached", "contact": "the contact never left"}
@@ -132,6 +133,13 @@ def replay_verdict(run):
     return "", "Identical: " + words + replay_limits()
 
 
+def listed(page, title, rows, header):
+    """A table with a heading, of so many rows as a reader reads; how many more there are."""
+    page.put("<h3>%s</h3>" % title + table(rows[:ROWS_SHOWN], header))
+    if len(rows) > ROWS_SHOWN:
+        page.put("<p>And %d more.</p>" % (len(rows) - ROWS_SHOWN))
+
+
 def integrity(page, run):
     recording = run.recording
     kind, words = replay_verdict(run)
@@ -151,17 +159,15 @@ def integrity(page, run):
     )
     if recording.losses:
         rows = [(int(first), int(last), reason) for first, last, reason in recording.losses]
-        page.put("<h3>Losses</h3>" + table(rows[:LOSSES_SHOWN], ("from sample", "to before", "what")))
-        if len(rows) > LOSSES_SHOWN:
-            page.put("<p>And %d more.</p>" % (len(rows) - LOSSES_SHOWN))
+        listed(page, "Losses", rows, ("from sample", "to before", "what"))
     if run.left_out:
         rows = [
             ("%.4f" % omega_star, int(first), int(last), reason) for omega_star, first, last, reason in run.left_out
         ]
-        page.put("<h3>Steps left out</h3>" + table(rows[:LOSSES_SHOWN], ("\u03c9*", "from sample", "to before", "why")))
+        listed(page, "Steps left out", rows, ("\u03c9*", "from sample", "to before", "why"))
     starts = [(int(sample), cause, reason) for sample, cause, reason in recording.starts]
     if starts:
-        page.put("<h3>Starts from rest</h3>" + table(starts[:LOSSES_SHOWN], ("at sample", "cause", "reason")))
+        listed(page, "Starts from rest", starts, ("at sample", "cause", "reason"))
 
 
 def configuration(page, run):
