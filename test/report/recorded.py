@@ -76,10 +76,24 @@ def stamp_of(seconds):
     return START + rospy.Duration.from_sec(seconds)
 
 
-def write_bag(path, configuration_text, acceleration, lost_blocks=(), lost_forces=(), restarts=(), period=PERIOD):
-    """What the simulator answers to `acceleration`, samples `period` s apart, and its impacts, in a bag. `lost_blocks`,
-    `lost_forces`: numbers of blocks of the gap and of the contact force that are not in it; `restarts`: samples at which a start
-    from rest is told, without one."""
+def write_bag(
+    path,
+    configuration_text,
+    acceleration,
+    lost_blocks=(),
+    lost_forces=(),
+    restarts=(),
+    contacts=(),
+    damping=0.01,
+    period=PERIOD,
+):
+    """What the simulator answers to `acceleration`, samples `period` s apart, and its impacts, in a bag.
+
+    lost_blocks, lost_forces   numbers of blocks of the gap and of the contact force that are not in it
+    restarts                   samples at which a start from rest is told, without one
+    contacts                   dictionary of clearances that are told, without effect, by their first samples; with each a
+                               configuration() of this damping ratio
+    """
     model = vibro_impact.Model(configuration_text)
     simulation = model.simulation(period)
 
@@ -102,6 +116,12 @@ def write_bag(path, configuration_text, acceleration, lost_blocks=(), lost_force
             stamp = stamp_of(seq * period)
             start = StreamStart(header=header(stamp), seq=seq, sample_period=period, cause=cause)
             bag.write("/stream_start", start, stamp)
+
+        for number, (seq, clearance) in enumerate(sorted(dict(contacts).items())):
+            text = vibro_impact.Model(configuration(clearance, damping)).configuration
+            stamp = stamp_of(seq * period)
+            info = ModelInfo(header=header(stamp), version="0.1.0", configuration=text, seq=seq, number=number + 1)
+            bag.write("/model_info", info, stamp)
 
         def record(impacts, time):
             for impact in impacts:

@@ -125,6 +125,26 @@ class Command(unittest.TestCase):
         self.assertIn("The above copyright notice and this permission notice shall be included in", licence)
         self.assert_says(text, html.escape(licence))
 
+    def test_many_changes_of_the_contact_are_a_table(self):
+        bag = os.path.join(self.folder_in(), "run.bag")
+        changes = {sample: 1e-6 * sample for sample in range(500, 20000, 500)}
+        recorded.write_bag(bag, recorded.configuration(), recorded.random_drive(0.4), contacts=changes)
+        text, _ = self.page(bag, "--no-replay")
+        self.assertEqual(text.count("youngs_modulus"), 2)  # of each beam, once
+        table = text[text.index("<h3>Changes of the contact alone</h3>") :]
+        table = table[: table.index("more.</p>")]
+        self.assertEqual(table.count("<tr>"), 21)
+        self.assertIn("<td class='number'>1500</td><td>24309.426302924</td><td>0.0015</td>", table)
+        self.assertTrue(table.endswith("<p>And %d " % (len(changes) - 20)))
+        # More than the contact is another.
+        recorded.write_bag(
+            bag, recorded.configuration(), recorded.random_drive(0.4), contacts={500: 0.0, 1000: 1e-3}, damping=0.02
+        )
+        text, _ = self.page(bag, "--no-replay")
+        self.assertEqual(text.count("youngs_modulus"), 4)
+        self.assert_says(text, "<h3>From sample 500 on</h3>")
+        self.assertNotIn("<h3>From sample 1000 on</h3>", text)
+
     def test_the_step_shown_first_can_be_chosen(self):
         self.assertEqual(self.page(self.stepped, "--step", "3")[1]["chosen"], 2)
         self.assertEqual(self.page(self.stepped, "--step", "1.21", "--no-replay")[1]["chosen"], 0)

@@ -17,8 +17,9 @@ from vibro_impact.report.page import Page, figure, plotly_licence, plotly_versio
 
 # A page of this many characters opens at once; what the rest leaves of it is for the data of the steps.
 LARGEST_PAGE = 13.0e6
-# Rows of a list.
+# Rows of a list, and configurations that are shown in full.
 ROWS_SHOWN = 20
+MODELS_SHOWN = 5
 # Independent averages of a frequency-response function below which the page warns.
 LEAST_AVERAGES = 8
 STATE_WORDS = {"free": "the contact never reached", "contact": "the contact never left"}
@@ -170,24 +171,42 @@ def integrity(page, run):
         listed(page, "Starts from rest", starts, ("at sample", "cause", "reason"))
 
 
-def configuration(page, run):
-    for model in run.recording.models:
-        page.put("<h3>From sample %d on</h3>" % model.seq)
+def in_full(page, model):
+    """All that a model_info says."""
 
-        def listed(values):
-            return ", ".join("%.6g" % value for value in values) + " Hz"
+    def hertz(values):
+        return ", ".join("%.6g" % value for value in values) + " Hz"
 
-        page.put(
-            table(
-                [
-                    ("version", model.version),
-                    ("free natural frequencies", listed(model.free_frequencies)),
-                    ("natural frequencies in contact", listed(model.contact_frequencies)),
-                    ("loss of the mapping", ", ".join("%.3g" % loss for loss in model.mapping_loss)),
-                ]
-            )
+    page.put("<h3>From sample %d on</h3>" % model.seq)
+    page.put(
+        table(
+            [
+                ("version", model.version),
+                ("free natural frequencies", hertz(model.free_frequencies)),
+                ("natural frequencies in contact", hertz(model.contact_frequencies)),
+                ("loss of the mapping", ", ".join("%.3g" % loss for loss in model.mapping_loss)),
+            ]
         )
-        page.put("<pre tabindex='0'>%s</pre>" % html.escape(model.configuration))
+    )
+    page.put("<pre tabindex='0'>%s</pre>" % html.escape(model.configuration))
+
+
+def configuration(page, run):
+    """What was computed with: in full where more than the contact is another, for its changes can be many."""
+    full, changes = [], []
+    for model in run.recording.models:
+        rest, stiffness, clearance = models.contact_apart(model.configuration)
+        if full and stiffness and full[-1][1] == (model.version, rest):
+            changes.append((model.seq, stiffness, clearance))
+        else:
+            full.append((model, (model.version, rest)))
+    for model, _ in full[:MODELS_SHOWN]:
+        in_full(page, model)
+    if len(full) > MODELS_SHOWN:
+        page.put("<p>And %d more.</p>" % (len(full) - MODELS_SHOWN))
+    if changes:
+        header = ("from sample", "stiffness (N/m)", "clearance (m)")
+        listed(page, "Changes of the contact alone", changes, header)
 
 
 def label(number, segment, period, total):

@@ -1,5 +1,7 @@
 """What the model of a recording says of its linear motions."""
 
+import re
+
 import numpy as np
 
 import vibro_impact
@@ -20,6 +22,15 @@ def of_recording(recording):
         return vibro_impact.Model(recording.models[0].configuration), ""
     except vibro_impact.Error as error:
         return None, "the recorded configuration cannot be used: " + " ".join(str(error).split())
+
+
+def contact_apart(configuration):
+    """(YAML text of a configuration without what a change of the contact changes, stiffness, clearance): as it is
+    recorded, "" where it is written in another way."""
+    found = re.search(r"^contact:\n  stiffness: (\S+)\n  clearance: (\S+)\n", configuration, re.MULTILINE)
+    if not found:
+        return configuration, "", ""
+    return configuration[: found.start()] + configuration[found.end() :], found.group(1), found.group(2)
 
 
 def bandwidth(recording, model):
