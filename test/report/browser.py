@@ -4,6 +4,7 @@ import json
 import os
 import tempfile
 import time
+import unittest
 
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
@@ -18,6 +19,22 @@ def executable(*names):
             if os.access(path, os.X_OK):
                 return path
     return None
+
+
+def may_lack_chromium(os_release):
+    """Whether a system of this /etc/os-release has no Chromium to install: Ubuntu 20.04 has it as a snap only."""
+    fields = dict(line.split("=", 1) for line in os_release.splitlines() if "=" in line)
+    return (fields.get("ID", "").strip("\"'"), fields.get("VERSION_ID", "").strip("\"'")) == ("ubuntu", "20.04")
+
+
+def require_chromium():
+    """Skips the test where there can be no Chromium, and fails it where there is none though there could be one."""
+    if executable("chromium", "chromium-browser", "google-chrome") and executable("chromedriver"):
+        return
+    with open("/etc/os-release", encoding="utf-8") as file:
+        if may_lack_chromium(file.read()):
+            raise unittest.SkipTest("there is no Chromium")
+    raise AssertionError("there is no Chromium, or no chromedriver; install what scripts/dependencies names")
 
 
 class Browser:

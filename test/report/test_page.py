@@ -16,7 +16,7 @@ import numpy as np
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, HERE)
 import recorded  # noqa: E402
-from browser import Browser, executable  # noqa: E402
+from browser import Browser, may_lack_chromium, require_chromium  # noqa: E402
 
 import vibro_impact  # noqa: E402
 
@@ -28,12 +28,18 @@ MARKS = (
 )
 
 
-@unittest.skipUnless(
-    executable("chromium", "chromium-browser", "google-chrome") and executable("chromedriver"), "there is no Chromium"
-)
+class Requirement(unittest.TestCase):
+    def test_a_chromium_may_be_missing_on_ubuntu_20_04_alone(self):
+        self.assertTrue(may_lack_chromium('NAME="Ubuntu"\nVERSION_ID="20.04"\nID=ubuntu\nID_LIKE=debian\n'))
+        self.assertFalse(may_lack_chromium('NAME="Ubuntu"\nVERSION_ID="22.04"\nID=ubuntu\n'))
+        self.assertFalse(may_lack_chromium('PRETTY_NAME="Debian GNU/Linux 12 (bookworm)"\nVERSION_ID="12"\nID=debian\n'))
+        self.assertFalse(may_lack_chromium(""))
+
+
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        require_chromium()
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
         path = lambda name: os.path.join(cls.folder.name, name)  # noqa: E731
@@ -385,4 +391,6 @@ class Page(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[a for a in sys.argv if a not in recorded.WRITE_SIGNAL])
+    outcome = unittest.main(argv=[a for a in sys.argv if a not in recorded.WRITE_SIGNAL], exit=False).result
+    # By this code ctest shows that a test was skipped.
+    sys.exit(not outcome.wasSuccessful() or (77 if outcome.skipped else 0))
