@@ -62,8 +62,8 @@ class Recording:
 
 
 def bag_paths(bags):
-    """The list of paths that one path or a list of them means, as bytes, for a name need not be text; a path is a string
-    or an os.PathLike."""
+    """The list of paths that one path or a list of them means, as bytes, for a name need not be text; a path is a
+    string, bytes or an os.PathLike."""
     one = isinstance(bags, (str, bytes, os.PathLike))
     return [os.fsencode(path) for path in ([bags] if one else bags)]
 

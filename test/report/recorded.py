@@ -91,8 +91,8 @@ def write_bag(
 
     lost_blocks, lost_forces   numbers of blocks of the gap and of the contact force that are not in it
     restarts                   samples at which a start from rest is told, without one
-    contacts                   dictionary of clearances that are told, without effect, by their first samples; with each a
-                               configuration() of this damping ratio
+    contacts                   dictionary of clearances that are told, without effect, by their first samples; with each
+                               a configuration() of this damping ratio
     """
     model = vibro_impact.Model(configuration_text)
     simulation = model.simulation(period)

@@ -157,8 +157,8 @@ class Command(unittest.TestCase):
         self.assert_says(text, "Identical: 200000 samples of gap and contact force and 0 impacts")
         self.assert_says(
             text,
-            "Computed with the simulator&#x27;s default limits: max_acceleration 100000 m/s\u00b2, max_bridged_gap 0.02 s,"
-            " max_step_back 0.1 s, max_stamp_jitter 0.05 s",
+            "Computed with the simulator&#x27;s default limits: max_acceleration 100000 m/s\u00b2, max_bridged_gap"
+            " 0.02 s, max_step_back 0.1 s, max_stamp_jitter 0.05 s",
         )
         self.assert_says(text, "Left out: there are no whole impacts in the recording.")
         self.assert_says(text, "the contact is never reached")
@@ -207,7 +207,8 @@ class Command(unittest.TestCase):
         self.assert_says(text, "random, as --drive says")
         os.unlink(self.out)
         self.assert_refused(self.report(self.linear, "--out", self.out, "--drive", "steps"), 1, "--drive", "no steps")
-        self.assert_refused(self.report(self.linear, "--out", self.out, "--drive", "sine"), 2, "--drive", "sine", "random")
+        result = self.report(self.linear, "--out", self.out, "--drive", "sine")
+        self.assert_refused(result, 2, "--drive", "sine", "random")
 
     def test_the_resolution_can_be_given(self):
         text, _ = self.page(self.linear, "--resolution", "50")

@@ -169,10 +169,10 @@ TEST_F(ExtractFrf, findsTheStepsAndEvaluatesTheirImpacts)
   const Outcome outcome = extract(run);
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   expectRows(sweep.expected(run));
-  EXPECT_THAT(outcome.out,
-              AllOf(HasSubstr(std::to_string(run.excitations.size()) + " blocks, " +
-                              std::to_string(sweep.signal.samples().size()) + " samples, none lost"),
-                    Not(HasSubstr("warning")), HasSubstr("5 steps found, 0 left out"), HasSubstr("frf.csv (5 rows)"), HasSubstr("(75 rows)")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr(std::to_string(run.excitations.size()) + " blocks, " +
+                                           std::to_string(sweep.signal.samples().size()) + " samples, none lost"),
+                                 Not(HasSubstr("warning")), HasSubstr("5 steps found, 0 left out"),
+                                 HasSubstr("frf.csv (5 rows)"), HasSubstr("(75 rows)")));
   const auto impacts = config::readImpactTable(path("results/impacts.csv"));
   ASSERT_EQ(impacts.size(), 75u);
   for (const config::ImpactRow& row : impacts)

@@ -35,7 +35,8 @@ struct RecordingSummary
 
 /// Proves that nothing of a run is missing in its recording, or says what is: the excitation's samples are numbered
 /// without a gap, every block of it was answered by a gap and a contact force of its number, finite ones, there is no
-/// answer without its block, and impacts are numbered without a gap up to the last contact that the force shows to have ended.
+/// answer without its block, and impacts are numbered without a gap up to the last contact that the force shows to have
+/// ended.
 class RecordingCheck
 {
 public:

@@ -20,8 +20,8 @@ struct ExtractionOptions
   core::ResponseOptions response;
 };
 
-/// A step of the drive, or the part of one under one contact, that is not evaluated because of a loss, or because it has
-/// too few cycles, as those that a change of the contact has left of it.
+/// A step of the drive, or the part of one under one contact, that is not evaluated because of a loss, or because it
+/// has too few cycles, as those that a change of the contact has left of it.
 struct LeftOutStep
 {
   double omega_star = 0.0;  ///< drive frequency over the lowest natural frequency of beam 1, 1

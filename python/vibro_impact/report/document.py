@@ -93,8 +93,8 @@ def replay_limits():
     """What the replay check takes the limits of the simulator for: it is not recorded what they were."""
     defaults = {name: given.default for name, given in inspect.signature(vibro_impact.check_replay).parameters.items()}
     return (
-        " Computed with the simulator's default limits: max_acceleration %g m/s\u00b2, max_bridged_gap %g s, max_step_back"
-        " %g s, max_stamp_jitter %g s; replay_check takes others."
+        " Computed with the simulator's default limits: max_acceleration %g m/s\u00b2, max_bridged_gap %g s,"
+        " max_step_back %g s, max_stamp_jitter %g s; replay_check takes others."
         % tuple(defaults[name] for name in ("max_acceleration", "max_bridged_gap", "max_step_back", "max_stamp_jitter"))
     )
 
@@ -406,9 +406,9 @@ def few_averages(page, estimate):
     """Says so where an estimate is of few averages."""
     if estimate.averages < LEAST_AVERAGES:
         page.put(
-            "<p class='left-out'>Few averages: %d segments are worth %.1f independent ones. Of fewer than %d the coherence"
-            " is too high by chance and the random error larger than stated; a coarser resolution (--resolution) or a longer"
-            " recording gives more.</p>" % (estimate.segments, estimate.averages, LEAST_AVERAGES)
+            "<p class='left-out'>Few averages: %d segments are worth %.1f independent ones. Of fewer than %d the"
+            " coherence is too high by chance and the random error larger than stated; a coarser resolution"
+            " (--resolution) or a longer recording gives more.</p>" % (estimate.segments, estimate.averages, LEAST_AVERAGES)
         )
 
 

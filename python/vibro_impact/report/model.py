@@ -34,8 +34,8 @@ def contact_apart(configuration):
 
 
 def bandwidth(recording, model):
-    """Least half-power bandwidth 2 zeta f of the resonances while apart, Hz: a modal table may damp each mode in its own
-    way. `model` may be None: of the recorded natural frequencies, at USUAL_DAMPING."""
+    """Least half-power bandwidth 2 zeta f of the resonances while apart, Hz: a modal table may damp each mode in its
+    own way. `model` may be None: of the recorded natural frequencies, at USUAL_DAMPING."""
     if model:
         frequency, damping = model.free_frequencies, np.maximum(model.free_damping_ratios, LEAST_DAMPING)
     else:

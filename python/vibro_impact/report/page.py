@@ -26,7 +26,8 @@ def plotly_version():
 
 def plotly_licence():
     """The notice that every copy of plotly.js must have with it, as the page does."""
-    return "<details><summary>Licence of plotly.js</summary><pre>%s</pre></details>" % html.escape(text_of(PLOTLY_LICENCE))
+    notice = html.escape(text_of(PLOTLY_LICENCE))
+    return "<details><summary>Licence of plotly.js</summary><pre>%s</pre></details>" % notice
 
 
 def table(rows, header=()):

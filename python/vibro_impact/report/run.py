@@ -21,8 +21,8 @@ DRIVES = ("steps", "random", "other")
 # recording; segments; captured: for each segment the impacts that made its response; star: I* over an impulse in N s;
 # drive: one of DRIVES, the segments are the steps of a drive of steps; told: whether the user has said so;
 # without_steps: why there are no steps; left_out: steps that were not evaluated; replay, replay_error: what came of the
-# replay check; spectral_lines: how the drive was judged, None of a drive of steps and where it could not be; suffix: how
-# labels call the run
+# replay check; spectral_lines: how the drive was judged, None of a drive of steps and where it could not be; suffix:
+# how labels call the run
 Run = namedtuple(
     "Run",
     "bags recording segments captured star drive told without_steps left_out replay replay_error spectral_lines suffix",

@@ -17,8 +17,8 @@ FrequencyResponse = namedtuple(
     "frequency auto_excitation auto_response h1 h2 coherence segments averages length resolution sample_period",
 )
 
-# lines: how many share the power of a segment, as the median over the loud ones; duration of a segment, s; loud: share of
-# the segments that are not silent
+# lines: how many share the power of a segment, as the median over the loud ones; duration of a segment, s; loud: share
+# of the segments that are not silent
 SpectralLines = namedtuple("SpectralLines", "lines duration loud")
 # Lines of a band that a segment shall have, by which it is judged whether a signal is random.
 BAND_LINES = 96.0
@@ -55,8 +55,8 @@ def whole_segments(signals, length):
 def frequency_response(excitation, response, sample_period, length):
     """Estimates H1 = G_xy/G_xx, H2 = G_yy/G_yx and the coherence |G_xy|^2/(G_xx G_yy) (Bendat and Piersol, Random Data,
     4th ed., ch. 6) from segments of `length` samples (even) with a Hann window, half overlapping, each without its
-    mean. Segments with a lost sample (NaN) are left out. None where fewer than two are whole: the coherence of one alone
-    is 1, whatever it holds."""
+    mean. Segments with a lost sample (NaN) are left out. None where fewer than two are whole: the coherence of one
+    alone is 1, whatever it holds."""
     window = hann(length)
     starts = whole_segments((excitation, response), length) if length <= len(response) else ()
     if len(starts) < 2:
@@ -107,8 +107,8 @@ def random_error(coherence, averages):
 
 
 def segment_length(samples, sample_period, bandwidth):
-    """Samples of a segment, a power of two: lines at most a sixteenth of `bandwidth` (Hz, the half-power bandwidth of the
-    sharpest resonance) apart, further where fewer than 32 averages would be left.
+    """Samples of a segment, a power of two: lines at most a sixteenth of `bandwidth` (Hz, the half-power bandwidth of
+    the sharpest resonance) apart, further where fewer than 32 averages would be left.
 
     H1 is the response averaged over |W|^2 of the window, whose second moment is sigma^2 = df^2/3 for a Hann window and
     lines df apart. Close to a resonance the response is 1/(1 + i x) of its peak, x = 2 (f - f_n)/B_r, so that H1 at the
