@@ -295,6 +295,8 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
   }
   const auto cycles = [&](const core::FoundStep& step)
   { return static_cast<double>(step.last - step.first) * summary.sample_period * step.frequency / two_pi; };
+  // Never rounded up to as many as a step has.
+  const auto digits = [](double value) { return std::floor(100.0 * value) / 100.0; };
   std::vector<core::FoundStep> found;
   std::uint64_t covered = 0;
   for (const auto& [part, cut] : cutAtChanges(survey.steps(), history))
@@ -307,7 +309,7 @@ Extraction extractResponses(const RecordedRun& recording, const ExtractionOption
     else
     {
       extraction.left_out.push_back({part.frequency / scales.frequency, part.first, part.last,
-                                     text(cut ? "changes of the contact leave " : "has ", cycles(part),
+                                     text(cut ? "changes of the contact leave " : "has ", digits(cycles(part)),
                                           " cycles, a step has at least ", options.steps.shortest_step)});
     }
   }
