@@ -428,6 +428,9 @@ def frequency_responses(page, run, resolution):
     if gap is None:
         page.left_out("frf", title, why_no_estimate(recording, recording.gap, length))
         return
+    if not gap.auto_excitation.max() > 0.0:
+        page.left_out("frf", title, "the base does not move.")
+        return
     page.section("frf", title)
     page.put(
         "<p>Ratios of the phasors of a response and of the base acceleration that excites it (ISO 7626-1). The"
