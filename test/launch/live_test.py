@@ -11,6 +11,7 @@ import time
 
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from roslib.packages import find_node
 
 from node_process import PATIENCE, NodeProcessTest, free_port, wait_until
@@ -200,12 +201,20 @@ class LiveTest(NodeProcessTest):
         self.assertEqual((result.returncode, result.stderr), (1, ""))
         self.assertIn("waiting for topic %s/gap" % self.namespace, result.stdout)
         self.shaken = ShakenSimulator(self)
+        # What is wrong with a simulator whose namespace begins alike is none of this one's.
+        neighbour = self.namespace.lstrip("/") + "0/simulator: Input"
+        publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1, latch=True)
+        self.interfaces.append(publisher)
+        publisher.publish(DiagnosticArray(status=[
+            DiagnosticStatus(name=neighbour, level=DiagnosticStatus.ERROR, message="refused")]))
         result = self.run_live("--plain", "--width", "100", "--height", "30", LC_ALL="C")
         self.assertEqual((result.returncode, result.stderr), (0, ""))
         self.assertTrue(result.stdout.isascii())
         self.assertEqual(len(result.stdout.splitlines()), 30)
         self.assertIn("running", result.stdout)
         self.assertIn("#", result.stdout)
+        self.assertIn("diagnostics: ", result.stdout)
+        self.assertNotIn(neighbour, result.stdout)
 
     def test_says_what_is_wrong(self):
         result = self.run_live()

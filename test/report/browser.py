@@ -9,7 +9,7 @@ import unittest
 from selenium import webdriver
 from selenium.webdriver.chrome.service import Service
 
-LIMIT = 60.0
+LIMIT = 300.0
 
 
 def executable(*names):
